@@ -1,0 +1,102 @@
+#include "hwsim/base/diagnostics.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace hwsim {
+namespace {
+
+std::string first_message(const std::vector<Diagnostic>& diagnostics) {
+  return diagnostics.empty() ? std::string("unknown input error") : diagnostics.front().message;
+}
+
+const char* severity_name(Severity severity) {
+  switch (severity) {
+    case Severity::note: return "note";
+    case Severity::warning: return "warning";
+    case Severity::error: return "error";
+  }
+  return "error";
+}
+
+const char* severity_color(Severity severity) {
+  switch (severity) {
+    case Severity::note: return "\033[1;36m";
+    case Severity::warning: return "\033[1;33m";
+    case Severity::error: return "\033[1;31m";
+  }
+  return "";
+}
+
+void append_excerpt(std::string& out, const Diagnostic& d) {
+  const std::string number = std::to_string(d.place.line);
+  const std::string margin(number.size(), ' ');
+  out += margin + " |\n" + number + " | " + d.place.line_text + "\n" + margin + " | ";
+  const auto column = static_cast<size_t>(std::max(1, d.place.column));
+  for (size_t i = 0; i + 1 < column; ++i)  // a tab stays a tab, so that the mark stands below its column
+    out += i < d.place.line_text.size() && d.place.line_text[i] == '\t' ? '\t' : ' ';
+  out += std::string(static_cast<size_t>(std::max(1, d.place.length)), '^');
+  if (!d.hint.empty()) out += " " + d.hint;
+  out += "\n";
+}
+
+// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbors cost 1.
+size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<size_t> before(b.size() + 1), previous(b.size() + 1), current(b.size() + 1);
+  for (size_t j = 0; j <= b.size(); ++j) previous[j] = j;
+  for (size_t i = 1; i <= a.size(); ++i) {
+    current[0] = i;
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const size_t substitution = previous[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      current[j] = std::min({previous[j] + 1, current[j - 1] + 1, substitution});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        current[j] = std::min(current[j], before[j - 2] + 1);
+    }
+    before = previous;
+    previous = current;
+  }
+  return previous[b.size()];
+}
+
+}  // namespace
+
+InputError::InputError(Diagnostic diagnostic, ExitStatus status)
+    : std::runtime_error(diagnostic.message), diagnostics_{std::move(diagnostic)}, status_(status) {}
+
+InputError::InputError(std::vector<Diagnostic> diagnostics, ExitStatus status)
+    : std::runtime_error(first_message(diagnostics)), diagnostics_(std::move(diagnostics)), status_(status) {}
+
+std::string render(const Diagnostic& d, bool color) {
+  const std::string reset = color ? "\033[0m" : "";
+  std::string out = (color ? severity_color(d.severity) : "") + std::string(severity_name(d.severity));
+  if (!d.code.empty()) out += "[" + d.code + "]";
+  out += reset + ": " + d.message + "\n";
+  if (!d.place.file.empty()) {
+    out += "  --> " + d.place.file;
+    if (d.place.line > 0) out += ":" + std::to_string(d.place.line) + ":" + std::to_string(std::max(1, d.place.column));
+    out += "\n";
+  }
+  const bool excerpt = d.place.line > 0 && !d.place.line_text.empty();
+  if (excerpt) append_excerpt(out, d);
+  if (!excerpt && !d.hint.empty()) out += "   = hint: " + d.hint + "\n";
+  for (const std::string& note : d.notes) out += "   = note: " + note + "\n";
+  if (!d.help.empty()) out += "   = help: " + d.help + "\n";
+  return out;
+}
+
+std::string nearest_name(std::string_view name, std::span<const std::string> candidates) {
+  std::string best;
+  size_t best_distance = 0;
+  for (const std::string& candidate : candidates) {
+    const size_t distance = edit_distance(name, candidate);
+    const size_t limit = std::max<size_t>(1, std::max(name.size(), candidate.size()) / 3);
+    if (distance <= limit && (best.empty() || distance < best_distance)) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+}  // namespace hwsim

@@ -1,0 +1,28 @@
+#pragma once
+// What the GPU can do at all. A technique that needs a switch that is off takes its documented emulation, or ends in an
+// error that names the switch ("gpu.features.native_msaa_max"). These and FunctionalConfig are the only parts of a GPU
+// that change what the functional emulator does; everything else only changes the timing.
+namespace hwsim {
+
+struct GpuFeatures {
+  int native_msaa_max = 8;
+  bool target_independent_raster = false;
+  bool post_depth_coverage = false;
+  bool coverage_override = false;
+  bool viewport_multicast = false;
+  bool programmable_sample_positions = false;
+  bool conservative_raster = false;
+  bool compressed_depth_read = false;
+  bool float_atomics = false;
+  bool append_consume = true;
+  bool tessellator_points = false;
+  bool fragment_interlock = false;
+};
+
+struct FunctionalConfig {
+  int post_transform_cache_entries = 32;  ///< FIFO
+  bool late_z_on_discard = true;          ///< depth written after the shader where it can discard (gpus 10.1)
+  int max_image_px = 16384;               ///< largest width or height of a render target
+};
+
+}  // namespace hwsim

@@ -1,0 +1,20 @@
+#pragma once
+// Errors of an image against a reference of the same size. Both linear; compared as a viewer sees them (sRGB, [0,1]).
+#include "pipeline/image/image.h"
+
+namespace hwsim::pipeline {
+
+struct ImageError {
+  double psnr_db = 0.0;  ///< of sRGB-encoded values in [0,1]; +infinity is reported as 999
+  double rmse = 0.0;     ///< likewise
+  double ssim = 0.0;     ///< of luma, 11x11 Gaussian window, sigma 1.5 (Wang et al. 2004)
+  double flip_mean = 0.0, flip_median = 0.0, flip_p99 = 0.0;  ///< LDR FLIP (Andersson et al. 2020), 0..1
+};
+
+/// Throws std::invalid_argument when sizes differ. `flip_map` (optional) receives the per-pixel FLIP error in r.
+ImageError compare(const Image& test, const Image& reference, Image* flip_map = nullptr);
+
+/// The magma color map on values in [0,1], for error and heat maps.
+glm::vec3 magma(float value);
+
+}  // namespace hwsim::pipeline
