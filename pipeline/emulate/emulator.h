@@ -1,0 +1,38 @@
+#pragma once
+// Runs a frame graph: the image, and every count of work.
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "hwsim/work_trace.h"
+#include "pipeline/graph/frame_graph.h"
+#include "pipeline/image/image.h"
+
+namespace hwsim::pipeline {
+
+/// Work that a scene does not need. Each switch changes neither image nor trace, only the emulator's own time.
+struct SkipSwitches {
+  bool frustum = true;  ///< instances wholly outside the view volume are not transformed (their culling is still counted)
+  bool accepted_tiles = true;  ///< per-sample depth tests in tiles that the coarse test accepts whole
+};
+
+struct EmulationOptions {
+  int jobs = 1;
+  SkipSwitches skip;
+  std::function<void(double done_ratio, const std::string& pass)> progress;  ///< optional
+};
+
+struct Emulation {
+  WorkTrace trace;
+  Image color;                 ///< the graph's output, linear
+  Image shading_heat;          ///< r: fragment shader invocations of each pixel, all passes
+  std::map<std::string, std::uint64_t> skipped;  ///< by switch: how often it applied
+  double wall_s = 0.0;
+};
+
+/// Throws InputError when the graph is not valid for this GPU.
+Emulation emulate(const FrameGraph& graph, const GpuFeatures& features, const FunctionalConfig& functional,
+                  const EmulationOptions& options);
+
+}  // namespace hwsim::pipeline

@@ -1,0 +1,63 @@
+#pragma once
+// Fixed-function state of a draw or full-screen pass, as a driver would set it.
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace hwsim::pipeline {
+
+enum class Compare : std::uint8_t { never, less, equal, less_equal, greater, not_equal, greater_equal, always };
+enum class StencilOp : std::uint8_t { keep, zero, replace, increment_saturate, decrement_saturate, invert, increment_wrap, decrement_wrap };
+enum class CullMode : std::uint8_t { none, back, front };
+enum class BlendFactor : std::uint8_t { zero, one, src_alpha, one_minus_src_alpha, dst_alpha, one_minus_dst_alpha, src_color, dst_color };
+enum class Topology : std::uint8_t { triangles, points };
+
+struct DepthState {
+  bool test = false;
+  bool write = false;
+  Compare compare = Compare::less;
+};
+
+struct StencilState {
+  bool test = false;
+  Compare compare = Compare::always;
+  std::uint8_t reference = 0;
+  std::uint8_t read_mask = 0xff;
+  std::uint8_t write_mask = 0xff;
+  StencilOp on_fail = StencilOp::keep;
+  StencilOp on_depth_fail = StencilOp::keep;
+  StencilOp on_pass = StencilOp::keep;
+};
+
+/// result = src * src_factor + dst * dst_factor, one pair for color and alpha each; write_mask bit 0 is red.
+struct BlendState {
+  bool enabled = false;
+  BlendFactor src_color = BlendFactor::one, dst_color = BlendFactor::zero;
+  BlendFactor src_alpha = BlendFactor::one, dst_alpha = BlendFactor::zero;
+  std::uint8_t write_mask = 0xf;
+};
+
+/// A sample's offset from the pixel center in 1/16 pixel, -8..7 (techniques 0.2).
+struct SamplePosition {
+  std::int8_t x = 0;
+  std::int8_t y = 0;
+};
+
+struct RasterState {
+  Topology topology = Topology::triangles;
+  CullMode cull = CullMode::back;
+  bool conservative = false;  ///< every pixel that the triangle touches counts as wholly covered
+  bool centroid = false;      ///< attributes of partly covered pixels are taken inside the triangle
+  bool sample_rate = false;   ///< the shader runs once for each covered sample
+  std::vector<SamplePosition> sample_positions;  ///< empty: the standard pattern of the sample count
+};
+
+struct PipelineState {
+  DepthState depth;
+  StencilState stencil;
+  RasterState raster;
+  std::vector<BlendState> blend;  ///< one a color attachment; missing ones are opaque
+  bool force_early_z = false;     ///< [earlydepthstencil]
+};
+
+}  // namespace hwsim::pipeline

@@ -1,0 +1,59 @@
+#pragma once
+// Shader programs as the emulator sees them: functions over batches of lanes, and what one lane's work is.
+// The functions come from templates over a lane type (shade/lanes-inl.h); the costs from the same templates run once on
+// a counting type (shade/count_lane.h). There is no hand-written cost table.
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace hwsim::pipeline {
+
+/// Operations of one lane in one pass through a block of a shader.
+struct ShaderOps {
+  std::uint32_t alu = 0;     ///< add, multiply, fused multiply-add, compare, select, min, max, integer, conversion
+  std::uint32_t sfu = 0;     ///< reciprocal, square root, exp2, log2, sine, cosine
+  std::uint32_t interp = 0;  ///< attribute scalars
+  std::uint32_t tex = 0;     ///< filtered texture requests
+  std::uint32_t load = 0;    ///< 32-bit words loaded from images and buffers
+  std::uint32_t store = 0;
+  std::uint32_t atomic = 0;
+  std::uint32_t group_memory = 0;
+};
+
+/// A shader is cut into blocks at its branches and loops. Block 0 runs for every lane.
+inline constexpr int kMaxBlocks = 16;
+using BlockOps = std::array<ShaderOps, kMaxBlocks>;
+
+struct FragmentBatch;  // emulate/fragment_batch.h
+struct VertexBatch;    // emulate/vertex_batch.h
+struct GroupBatch;     // emulate/group_batch.h
+
+struct VertexProgram {
+  std::string name;
+  void (*run)(VertexBatch& batch, const void* uniforms) = nullptr;
+  ShaderOps ops;
+  int varying_scalars = 0;  ///< values written for the rasterizer to interpolate
+};
+
+struct FragmentProgram {
+  std::string name;
+  void (*run)(FragmentBatch& batch, const void* uniforms) = nullptr;
+  BlockOps ops{};
+  int block_count = 1;
+  int color_outputs = 1;
+  int varying_scalars = 0;   ///< must equal those of the vertex program; 0 for full-screen programs
+  bool can_discard = false;  ///< depth writes wait for the shader unless early tests are forced
+  bool writes_storage = false;
+};
+
+struct ComputeProgram {
+  std::string name;
+  void (*run)(GroupBatch& group, const void* uniforms) = nullptr;
+  BlockOps ops{};
+  int block_count = 1;
+  int group_width = 16, group_height = 16;  ///< invocations
+  int group_memory_bytes = 0;
+};
+
+}  // namespace hwsim::pipeline
