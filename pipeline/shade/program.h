@@ -4,6 +4,7 @@
 // a counting type (shade/count_lane.h). There is no hand-written cost table.
 #include <array>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,9 @@ struct VertexProgram {
   void (*run)(VertexBatch& batch, const void* uniforms) = nullptr;
   ShaderOps ops;
   int varying_scalars = 0;  ///< values written for the rasterizer to interpolate
+  /// The matrix by which the program transforms world positions; null when it also moves them, so that a mesh's bounds
+  /// do not bound what is drawn.
+  const glm::mat4* (*clip_from_world)(const void* uniforms) = nullptr;
 };
 
 struct FragmentProgram {

@@ -1,0 +1,143 @@
+// Coarse and fine depth tests of 8x8 tiles. Per-target include guard.
+#include "pipeline/depth/depth_format.h"
+#include "pipeline/emulate/gpu_image.h"
+#include "pipeline/graph/pipeline_state.h"
+#include "pipeline/raster/coverage-inl.h"
+#include "pipeline/raster/triangle.h"
+#include "pipeline/shade/codec.h"
+
+#if defined(HWSIM_DEPTH_DEPTH_TILE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_DEPTH_DEPTH_TILE_INL_H_
+#undef HWSIM_DEPTH_DEPTH_TILE_INL_H_
+#else
+#define HWSIM_DEPTH_DEPTH_TILE_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::pipeline::HWY_NAMESPACE {
+
+/// Depth of a triangle at (x, y) pixels from its reference pixel's corner, as stored. The only place where depth is
+/// evaluated, so that EQUAL passes meet the bits of the pre-pass.
+HWY_INLINE LaneI depth_at(const Plane& z, LaneF x, LaneF y, float scale) {
+  const LaneF value = saturate((LaneF(z.base) + LaneF(z.ddy) * y) + LaneF(z.ddx) * x);
+  if (scale == 0.0f) return float_to_bits(value + LaneF(0.0f));
+  return LaneI(hn::NearestInt((value * LaneF(scale)).v));
+}
+
+HWY_INLINE LaneM compare_depth(Compare compare, LaneI a, LaneI b) {
+  switch (compare) {
+    case Compare::never: return a != a;
+    case Compare::less: return a < b;
+    case Compare::equal: return a == b;
+    case Compare::less_equal: return !(a > b);
+    case Compare::greater: return a > b;
+    case Compare::not_equal: return a != b;
+    case Compare::greater_equal: return !(a < b);
+    case Compare::always: return a == a;
+  }
+  return a == a;
+}
+
+enum class CoarseResult { killed, accepted, ambiguous };
+
+/// The coarse test: bounds of the triangle over the tile against the tile's bounds. The evaluation in the fine test
+/// rounds each of its five operations, so bounds are widened by 2^-20 of the largest term before they are used.
+inline CoarseResult coarse_test(const RasterTriangle& t, int x, int y, float scale, Compare compare,
+                                std::uint32_t tile_min, std::uint32_t tile_max) {
+  if (compare == Compare::always) return CoarseResult::accepted;
+  if (compare == Compare::never) return CoarseResult::killed;
+  if (compare == Compare::not_equal) return CoarseResult::ambiguous;
+  const float left = static_cast<float>(x - t.reference_x), top = static_cast<float>(y - t.reference_y);
+  const float across = t.z.ddx * 8.0f, down = t.z.ddy * 8.0f;
+  const float corner = t.z.base + t.z.ddx * left + t.z.ddy * top;
+  const float slack = (std::fabs(t.z.base) + std::fabs(t.z.ddx) * (std::fabs(left) + 8.0f) +
+                       std::fabs(t.z.ddy) * (std::fabs(top) + 8.0f)) * 0x1p-20f;
+  const float low = corner + std::min(across, 0.0f) + std::min(down, 0.0f) - slack;
+  const float high = corner + std::max(across, 0.0f) + std::max(down, 0.0f) + slack;
+  const auto clamp01 = [](float v) { return v > 0.0f ? (v < 1.0f ? v : 1.0f) : 0.0f; };
+  const std::uint32_t nearest = depth_bits(clamp01(low), scale), farthest = depth_bits(clamp01(high), scale);
+  switch (compare) {
+    case Compare::less:
+      return nearest >= tile_max ? CoarseResult::killed
+                                 : farthest < tile_min ? CoarseResult::accepted : CoarseResult::ambiguous;
+    case Compare::less_equal:
+      return nearest > tile_max ? CoarseResult::killed
+                                : farthest <= tile_min ? CoarseResult::accepted : CoarseResult::ambiguous;
+    case Compare::greater:
+      return farthest <= tile_min ? CoarseResult::killed
+                                  : nearest > tile_max ? CoarseResult::accepted : CoarseResult::ambiguous;
+    case Compare::greater_equal:
+      return farthest < tile_min ? CoarseResult::killed
+                                 : nearest >= tile_max ? CoarseResult::accepted : CoarseResult::ambiguous;
+    default:  // equal
+      return nearest > tile_max || farthest < tile_min ? CoarseResult::killed : CoarseResult::ambiguous;
+  }
+}
+
+struct TileDepth {
+  std::uint32_t* stored;  ///< samples * 64 values
+  std::uint32_t* tile_min;
+  std::uint32_t* tile_max;
+  float scale;
+};
+
+template <Compare kCompare, bool kWrite>
+void fine_test_of(const RasterTriangle& t, int x, int y, std::span<const SamplePosition> positions,
+                  const TileDepth& tile, std::uint64_t* masks) {
+  const float left = static_cast<float>(x - t.reference_x), top = static_cast<float>(y - t.reference_y);
+  LaneI lowest(std::numeric_limits<std::int32_t>::max()), highest(0);
+  for (std::size_t s = 0; s < positions.size(); ++s) {
+    // Sums of multiples of 1/16 below 2^15: exact.
+    const LaneF sample_x(left + 0.5f + static_cast<float>(positions[s].x) * 0.0625f);
+    const LaneF sample_y(top + 0.5f + static_cast<float>(positions[s].y) * 0.0625f);
+    auto* stored = reinterpret_cast<std::int32_t*>(tile.stored) + s * kBlockLanes;
+    const std::uint64_t covered = masks[s];
+    std::uint64_t passed = 0;
+    for (int v = 0; v < kBlockVectors; ++v) {
+      const int first = v * kVectorLanes;
+      const LaneI old = load(stored + first);
+      const LaneI z = depth_at(t.z, load(kLaneOffsets.fx + first) + sample_x, load(kLaneOffsets.fy + first) + sample_y,
+                               tile.scale);
+      const LaneM pass = mask_from_bits(covered, first) & compare_depth(kCompare, z, old);
+      put_mask(pass, v, passed);
+      if constexpr (kWrite) {
+        const LaneI now = select(pass, z, old);
+        store(now, stored + first);
+        lowest = min(lowest, now);
+        highest = max(highest, now);
+      }
+    }
+    masks[s] = passed;
+  }
+  if constexpr (kWrite) {
+    *tile.tile_min = static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(DI(), lowest.v)));
+    *tile.tile_max = static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(DI(), highest.v)));
+  }
+}
+
+template <bool kWrite>
+void fine_test_dispatch(Compare compare, const RasterTriangle& t, int x, int y,
+                        std::span<const SamplePosition> positions, const TileDepth& tile, std::uint64_t* masks) {
+  switch (compare) {
+    case Compare::less: return fine_test_of<Compare::less, kWrite>(t, x, y, positions, tile, masks);
+    case Compare::equal: return fine_test_of<Compare::equal, kWrite>(t, x, y, positions, tile, masks);
+    case Compare::less_equal: return fine_test_of<Compare::less_equal, kWrite>(t, x, y, positions, tile, masks);
+    case Compare::greater: return fine_test_of<Compare::greater, kWrite>(t, x, y, positions, tile, masks);
+    case Compare::greater_equal: return fine_test_of<Compare::greater_equal, kWrite>(t, x, y, positions, tile, masks);
+    case Compare::not_equal: return fine_test_of<Compare::not_equal, kWrite>(t, x, y, positions, tile, masks);
+    case Compare::always: return fine_test_of<Compare::always, kWrite>(t, x, y, positions, tile, masks);
+    case Compare::never: return fine_test_of<Compare::never, kWrite>(t, x, y, positions, tile, masks);
+  }
+}
+
+/// The fine test of all covered samples: clears the bits of samples that fail, writes the others' depth if asked to.
+inline void fine_test(Compare compare, bool write, const RasterTriangle& t, int x, int y,
+                      std::span<const SamplePosition> positions, const TileDepth& tile, std::uint64_t* masks) {
+  if (write) return fine_test_dispatch<true>(compare, t, x, y, positions, tile, masks);
+  fine_test_dispatch<false>(compare, t, x, y, positions, tile, masks);
+}
+
+}  // namespace hwsim::pipeline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

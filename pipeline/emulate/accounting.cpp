@@ -1,0 +1,86 @@
+#include "pipeline/emulate/pass_context.h"
+
+namespace hwsim::pipeline {
+namespace {
+
+/// Sums over the subgroups of each width: issued = lanes of the subgroup * the most trips of one of them.
+struct BlockLanes {
+  std::uint64_t active = 0;
+  std::array<std::uint64_t, kSubgroupWidths.size()> issued{};
+};
+
+BlockLanes sum_trips(const std::array<std::int32_t, kBatchLanes>& trips, int lanes) {
+  BlockLanes sum;
+  std::array<std::int32_t, kBatchLanes / 8> most{};
+  for (int lane = 0; lane < lanes; ++lane) {
+    const std::int32_t n = trips[static_cast<std::size_t>(lane)];
+    sum.active += static_cast<std::uint64_t>(n);
+    std::int32_t& group = most[static_cast<std::size_t>(lane / 8)];
+    group = n > group ? n : group;
+  }
+  for (std::size_t w = 0; w < kSubgroupWidths.size(); ++w) {
+    const int width = kSubgroupWidths[w];
+    for (int first = 0; first < lanes; first += width) {
+      std::int32_t highest = 0;
+      for (int group = first / 8; group < (first + width) / 8; ++group)
+        highest = std::max(highest, most[static_cast<std::size_t>(group)]);
+      // A subgroup that the batch does not fill is charged for its share: the hardware fills it with other quads.
+      sum.issued[w] += static_cast<std::uint64_t>(highest) * static_cast<std::uint64_t>(std::min(width, lanes - first));
+    }
+  }
+  return sum;
+}
+
+void charge(const ShaderOps& ops, const BlockLanes& n, PassCounters& c) {
+  ShaderCounters& s = c.shader;
+  s.alu_lane_ops += ops.alu * n.active;
+  s.alu_issued_lane_ops_w8 += ops.alu * n.issued[0];
+  s.alu_issued_lane_ops_w16 += ops.alu * n.issued[1];
+  s.alu_issued_lane_ops_w32 += ops.alu * n.issued[2];
+  s.alu_issued_lane_ops_w64 += ops.alu * n.issued[3];
+  s.sfu_lane_ops += ops.sfu * n.active;
+  s.sfu_issued_lane_ops_w8 += ops.sfu * n.issued[0];
+  s.sfu_issued_lane_ops_w16 += ops.sfu * n.issued[1];
+  s.sfu_issued_lane_ops_w32 += ops.sfu * n.issued[2];
+  s.sfu_issued_lane_ops_w64 += ops.sfu * n.issued[3];
+  s.interp_lane_ops += ops.interp * n.active;
+  s.load_lane_ops += ops.load * n.active;
+  s.store_lane_ops += ops.store * n.active;
+  s.atomic_lane_ops += ops.atomic * n.active;
+  s.group_memory_lane_ops += ops.group_memory * n.active;
+  c.tex.requests += ops.tex * n.active;
+  c.tex.bilinear_probes += ops.tex * n.active;
+}
+
+}  // namespace
+
+bool tests_late(const PipelineState& state, const FragmentProgram* program) {
+  if (program == nullptr || state.force_early_z || !(state.depth.test || state.stencil.test)) return false;
+  return program->writes_storage || (program->can_discard && (state.depth.write || state.stencil.test));
+}
+
+void account_blocks(const BlockTrips& blocks, const BlockOps& ops, int block_count, int lanes, PassCounters& counters) {
+  BlockLanes all;
+  all.active = static_cast<std::uint64_t>(lanes);
+  all.issued.fill(all.active);
+  charge(ops[0], all, counters);
+  for (int block = 1; block < block_count; ++block) {
+    if ((blocks.used >> block & 1u) == 0) continue;
+    charge(ops[static_cast<std::size_t>(block)], sum_trips(blocks.trips[static_cast<std::size_t>(block)], lanes),
+           counters);
+  }
+}
+
+void account_shading(const FragmentBatch& batch, const FragmentProgram& program, bool sample_rate, PassCounters& c) {
+  const int lanes = 4 * batch.quad_count;
+  const auto active = static_cast<std::uint64_t>(__builtin_popcountll(batch.active_lanes));
+  c.stats.fragment_shader_invocations += static_cast<std::uint64_t>(lanes);
+  c.ps.invocations += active;
+  c.ps.helper_invocations += static_cast<std::uint64_t>(lanes) - active;
+  if (sample_rate) c.ps.sample_rate_invocations += active;
+  c.ps.discarded_invocations += static_cast<std::uint64_t>(__builtin_popcountll(batch.discarded_lanes));
+  account_blocks(batch.blocks, program.ops, program.block_count, lanes, c);
+  c.tex.bilinear_probes += batch.tex_bilinear_probes;
+}
+
+}  // namespace hwsim::pipeline

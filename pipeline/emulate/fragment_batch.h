@@ -1,0 +1,108 @@
+#pragma once
+// Up to 16 quads on their way through a fragment shader: 64 lanes, four for each quad.
+#include <array>
+#include <cstdint>
+
+#include "pipeline/emulate/gpu_image.h"
+#include "pipeline/raster/sample_pattern.h"
+#include "pipeline/raster/triangle.h"
+#include "pipeline/shade/program.h"
+#include "pipeline/shade/texture_view.h"
+
+namespace hwsim::pipeline {
+
+inline constexpr int kBatchLanes = 64;
+inline constexpr int kBatchQuads = 16;
+inline constexpr int kMaxColorTargets = 6;
+inline constexpr int kMaxImageSlots = 8;
+inline constexpr int kMaxBufferSlots = 4;
+
+/// Material state of a draw, as shaders see it.
+struct MaterialView {
+  float base_color[4] = {1, 1, 1, 1};
+  float emissive[3] = {0, 0, 0};
+  float metallic = 1.0f, roughness = 1.0f, normal_scale = 1.0f, occlusion_strength = 1.0f, alpha_cutoff = 0.5f;
+  bool alpha_test = false;
+  bool double_sided = false;
+  bool has_tangents = false, has_colors = false;
+  int index = 0;
+  const TextureView* base_color_texture = nullptr;  ///< null: none
+  const TextureView* metallic_roughness_texture = nullptr;
+  const TextureView* normal_texture = nullptr;
+  const TextureView* emissive_texture = nullptr;
+  const TextureView* occlusion_texture = nullptr;
+};
+
+/// Image and buffer slots of a pass.
+struct ResourceView {
+  std::array<const GpuImage*, kMaxImageSlots> images{};
+  std::array<std::uint32_t*, kMaxBufferSlots> buffers{};
+  std::array<std::uint64_t, kMaxBufferSlots> buffer_words{};
+};
+
+/// How often each lane went through each block of a shader (a loop's body: once for each iteration).
+struct BlockTrips {
+  alignas(64) std::array<std::array<std::int32_t, kBatchLanes>, kMaxBlocks> trips;
+  std::uint32_t used = 0;  ///< bit b: trips[b] has been started; others hold garbage. Block 0 is not kept: all lanes, once
+};
+
+struct FragmentBatch {
+  int quad_count = 0;
+  std::uint64_t active_lanes = 0;  ///< fragments; the other lanes of the quads are helpers
+  int sample_index = -1;           ///< sample-rate shading: the sample; -1 at pixel rate
+
+  // Of each quad
+  std::array<std::int32_t, kBatchQuads> quad_x, quad_y;  ///< top left pixel
+  std::array<const float*, kBatchQuads> varyings[3];     ///< of the three vertices; null in full-screen passes
+  std::array<std::uint32_t, kBatchQuads> primitive;
+  std::array<bool, kBatchQuads> front_facing;
+  std::array<const RasterTriangle*, kBatchQuads> triangle;
+
+  // Of each lane
+  alignas(64) std::array<float, kBatchLanes> b1, b2;              ///< perspective-correct barycentrics at the shading point
+  alignas(64) std::array<float, kBatchLanes> b1_center, b2_center;  ///< at the pixel center, for derivatives
+  alignas(64) std::array<std::int32_t, kBatchLanes> pixel_x, pixel_y;
+  alignas(64) std::array<std::uint32_t, kBatchLanes> coverage;    ///< bit s: sample s
+
+  const MaterialView* material = nullptr;
+  const ResourceView* resources = nullptr;
+  TextureTracker* texture_tracker = nullptr;
+
+  // Results
+  alignas(64) float color[kMaxColorTargets][4][kBatchLanes];
+  std::uint64_t discarded_lanes = 0;
+  BlockTrips blocks;
+  std::uint64_t tex_bilinear_probes = 0;  ///< beyond the first of each request
+};
+
+/// Up to 64 vertices in a vertex shader.
+struct VertexBatch {
+  int count = 0;
+  alignas(64) float position[3][kBatchLanes];
+  alignas(64) float normal[3][kBatchLanes];
+  alignas(64) float tangent[4][kBatchLanes];
+  alignas(64) float uv0[2][kBatchLanes];
+  alignas(64) float color[4][kBatchLanes];
+  alignas(64) float radius[kBatchLanes];
+  const float* world_from_local = nullptr;   ///< 4x4, column-major
+  const float* normal_from_local = nullptr;  ///< 3x3, column-major: inverse transpose, not normalized
+
+  alignas(64) float clip_position[4][kBatchLanes];
+  static constexpr int kMaxVaryings = 24;
+  alignas(64) float varyings[kMaxVaryings][kBatchLanes];
+};
+
+/// A compute group.
+struct GroupBatch {
+  int group_x = 0, group_y = 0;
+  int width = 0, height = 0;          ///< invocations of the group
+  int image_width = 0, image_height = 0;
+  const ResourceView* resources = nullptr;
+  std::uint32_t* group_memory = nullptr;  ///< zeroed before the group starts
+  // Trips are kept for each of the group's invocations, 64 at a time in lane order.
+  BlockTrips blocks;
+  void (*end_wave)(GroupBatch& group, int first_invocation) = nullptr;  ///< accounts `blocks` and clears it
+  void* accounting = nullptr;
+};
+
+}  // namespace hwsim::pipeline

@@ -1,0 +1,80 @@
+#pragma once
+// What stays the same during a pass, and what each worker thread keeps to itself.
+#include <span>
+#include <vector>
+
+#include "pipeline/emulate/emulator.h"
+#include "pipeline/emulate/segment.h"
+
+namespace hwsim::pipeline {
+
+struct PassContext {
+  const Pass* pass = nullptr;
+  GpuImage* depth = nullptr;
+  float depth_scale = 0.0f;  ///< see depth/depth_format.h
+  int depth_bytes = 0;       ///< of a sample, for byte counts
+  std::vector<GpuImage*> color;
+  int width = 0, height = 0, samples = 1;
+  int bins_x = 0, bins_y = 0;
+  std::span<const SamplePosition> positions;
+  int sample_min_x = 0, sample_min_y = 0, sample_max_x = 0, sample_max_y = 0;
+  ResourceView resources;
+  std::vector<DrawInfo> draws;
+  std::uint32_t chunk_primitives = 1;  ///< triangles of a chunk
+  std::size_t chunk_count = 1;
+  std::uint32_t* heat = nullptr;  ///< invocations of each pixel, tile by tile as in GpuImage; null: not wanted
+  int heat_blocks_x = 0;
+  int heat_shift = 0;             ///< the heat image's pixels are this much coarser (log2)
+  SkipSwitches skip;
+};
+
+/// The covered samples of a quad: bit i of masks[s] is its lane i.
+struct QuadSamples {
+  std::uint8_t masks[kMaxSamples];
+};
+
+struct BinWorker {
+  FragmentBatch batch;
+  std::array<std::int32_t, kBatchQuads> block;        ///< tile of each quad in the targets
+  std::array<std::int32_t, kBatchQuads> quad_in_block;
+  std::array<QuadSamples, kBatchQuads> samples;
+  FragmentBatch sample_batch;                         ///< sample-rate shading: the quads that have the sample
+  std::array<std::int32_t, kBatchQuads> sample_quad;  ///< of each quad of sample_batch: its number in `batch`
+
+  TextureTracker texture_tracker;
+  std::vector<std::uint64_t> used_lines;  ///< texture lines of the pass
+  std::vector<PassCounters> chunks;
+  std::uint32_t current_chunk = 0;
+  std::uint64_t accepted_tiles_skipped = 0;
+  const DrawInfo* draw = nullptr;         ///< of the quads in `batch`
+  const PipelineState* state = nullptr;
+  const FragmentProgram* program = nullptr;
+  const void* uniforms = nullptr;
+  bool late_z = false;
+
+  PassCounters& counters() { return chunks[current_chunk]; }
+};
+
+/// Rasterizes, tests, shades and writes one screen bin: all triangles of the segment, in order.
+void run_bin(const PassContext& context, const Segment& segment, int bin, BinWorker& worker);
+/// Shades one screen bin of a full-screen pass.
+void run_full_screen_bin(const PassContext& context, int bin, BinWorker& worker);
+
+/// Whether depth and stencil are tested after the shader (techniques 0.4, gpus 10.1).
+bool tests_late(const PipelineState& state, const FragmentProgram* program);
+
+/// Charges the batch's invocations and their blocks' operations.
+void account_shading(const FragmentBatch& batch, const FragmentProgram& program, bool sample_rate, PassCounters& counters);
+void account_blocks(const BlockTrips& blocks, const BlockOps& ops, int block_count, int lanes, PassCounters& counters);
+
+/// Counts the use of a tile: once a chunk, and once a pass.
+template <class UnitCounters>
+void touch_tile(GpuImage& image, int block, std::uint32_t chunk, UnitCounters& counters) {
+  std::uint32_t& last = image.touched_chunk[static_cast<std::size_t>(block)];
+  if (last == chunk + 1) return;
+  counters.touched_tiles += 1;
+  counters.first_touched_tiles += last == 0 ? 1 : 0;
+  last = chunk + 1;
+}
+
+}  // namespace hwsim::pipeline

@@ -1,0 +1,65 @@
+#pragma once
+// A run of draws whose triangles are set up, binned and rasterized together. Segments bound memory; they follow each
+// other in submission order, so the result does not depend on where they are cut.
+#include <cstdint>
+#include <vector>
+
+#include "hwsim/counters.h"
+#include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/graph/frame_graph.h"
+
+namespace hwsim::pipeline {
+
+inline constexpr int kBinPx = 64;  ///< screen bins are the unit of parallel work
+inline constexpr int kBlocksPerBin = kBinPx / kBlockPx;
+
+/// One draw of a pass, ready to run.
+struct DrawInfo {
+  const DrawBatch* batch = nullptr;
+  const Mesh* mesh = nullptr;
+  const Mesh::Part* part = nullptr;
+  const MaterialView* material = nullptr;
+  float world_from_local[16] = {};
+  float normal_from_local[9] = {};
+  bool mirrored = false;      ///< the transform flips the winding
+  bool cull_back = false;     ///< after double-sidedness and mirroring
+  bool cull_front = false;
+  std::uint32_t first_vertex = 0, vertex_count = 0;  ///< range of the mesh's vertices that the part uses
+  std::uint32_t first_primitive = 0;                 ///< number in the pass of its first triangle
+  std::uint32_t triangle_count() const { return part->index_count / 3; }
+};
+
+/// Set high in RasterTriangle::vertex: the vertex was made by clipping and lies in the item's own array.
+inline constexpr std::uint32_t kClippedVertexBit = 0x80000000u;
+
+/// Up to kItemTriangles triangles of one draw.
+inline constexpr std::uint32_t kItemTriangles = 2048;
+struct GeometryItem {
+  std::uint32_t draw = 0;
+  std::uint32_t first_triangle = 0, triangle_count = 0;  ///< within the draw
+
+  std::vector<RasterTriangle> triangles;
+  std::vector<float> clipped_varyings;
+  std::vector<std::uint32_t> binned;     ///< triangle numbers, sorted by bin, in submission order within a bin
+  std::vector<std::uint32_t> bin_start;  ///< bins + 1 offsets into `binned`
+};
+
+/// A vertex after the vertex shader.
+struct ShadedVertex {
+  float clip_position[4];
+  ScreenVertex screen;         ///< valid unless needs_clip
+  std::uint8_t outcode = 0;    ///< see frustum_outcode
+  bool needs_clip = false;     ///< behind near, beyond far, or out of the guard band
+};
+
+struct Segment {
+  std::vector<GeometryItem> items;
+  std::vector<ShadedVertex> vertices;
+  std::vector<float> varyings;  ///< of all draws; stride: varying_scalars of the draw's vertex program
+  std::uint32_t first_draw = 0;
+  std::vector<std::uint32_t> vertex_base;   ///< of each draw of the segment: its first element of `vertices`
+  std::vector<std::size_t> varying_base;    ///< likewise of `varyings`
+  std::vector<char> outside;                ///< likewise: no part of it is in the view volume
+};
+
+}  // namespace hwsim::pipeline

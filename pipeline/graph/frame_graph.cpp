@@ -1,0 +1,55 @@
+#include "pipeline/graph/frame_graph.h"
+
+#include <utility>
+
+namespace hwsim::pipeline {
+
+std::uint64_t allocated_bytes(const ImageDesc& image) {
+  return static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height) *
+         static_cast<std::uint64_t>(image.samples) * info(image.format).bytes;
+}
+
+std::uint64_t allocated_bytes(const BufferDesc& buffer) { return 4 * buffer.words; }
+
+ImageId FrameGraph::add_image(ImageDesc desc) {
+  images_.push_back(std::move(desc));
+  return {static_cast<int>(images_.size()) - 1};
+}
+
+BufferId FrameGraph::add_buffer(BufferDesc desc) {
+  buffers_.push_back(std::move(desc));
+  return {static_cast<int>(buffers_.size()) - 1};
+}
+
+Pass& FrameGraph::add_pass(std::string name, PassKind kind) {
+  Pass pass;
+  pass.name = std::move(name);
+  pass.kind = kind;
+  pass.width = width_;
+  pass.height = height_;
+  passes_.push_back(std::move(pass));
+  return passes_.back();
+}
+
+Pass& FrameGraph::add_clear(std::string name, std::vector<ImageId> targets, glm::vec4 color) {
+  Pass& pass = add_pass(std::move(name), PassKind::clear);
+  if (!targets.empty()) {
+    pass.width = image(targets.front()).width;
+    pass.height = image(targets.front()).height;
+    pass.samples = image(targets.front()).samples;
+  }
+  pass.targets = std::move(targets);
+  pass.clear_color = color;
+  return pass;
+}
+
+Pass& FrameGraph::add_resolve(std::string name, ImageId source, ImageId target) {
+  Pass& pass = add_pass(std::move(name), PassKind::resolve);
+  pass.width = image(target).width;
+  pass.height = image(target).height;
+  pass.source = source;
+  pass.targets = {target};
+  return pass;
+}
+
+}  // namespace hwsim::pipeline

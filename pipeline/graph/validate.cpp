@@ -1,0 +1,229 @@
+#include "pipeline/graph/validate.h"
+
+#include <algorithm>
+
+#include "pipeline/emulate/fragment_batch.h"
+
+namespace hwsim::pipeline {
+namespace {
+
+class Validator {
+ public:
+  Validator(const FrameGraph& graph, const GpuFeatures& features, const FunctionalConfig& functional)
+      : graph_(graph), features_(features), functional_(functional), written_(graph.images().size(), 0) {}
+
+  std::vector<Diagnostic> run() {
+    for (const ImageDesc& image : graph_.images()) check_image(image);
+    if (!errors_.empty()) return std::move(errors_);
+    for (const Pass& pass : graph_.passes()) check_pass(pass);
+    check_output();
+    return std::move(errors_);
+  }
+
+ private:
+  void fail(std::string code, std::string message, std::string help = "") {
+    errors_.push_back({Severity::error, std::move(code), std::move(message), {}, {}, {}, std::move(help)});
+  }
+
+  static std::string text(const ImageDesc& image) {
+    return "`" + image.name + "` (" + std::string(info(image.format).name) + ", " + std::to_string(image.width) + "x" +
+           std::to_string(image.height) + ", " + std::to_string(image.samples) + "x)";
+  }
+
+  void check_image(const ImageDesc& image) {
+    if (image.width < 1 || image.height < 1 || image.width > functional_.max_image_px ||
+        image.height > functional_.max_image_px)
+      fail("G001", "image " + text(image) + " must be 1 to " + std::to_string(functional_.max_image_px) +
+                       " pixels wide and high",
+           "choose a smaller resolution or supersampling rate");
+    if (image.format == Format::none) fail("G003", "image `" + image.name + "` has no format");
+    const int s = image.samples;
+    if (s < 1 || s > kMaxSamples || (s & (s - 1)) != 0)
+      fail("G002", "image " + text(image) + " must have 1, 2, 4, 8, 16 or 32 samples");
+    else if (s > features_.native_msaa_max)
+      fail("G006", "image " + text(image) + " needs " + std::to_string(s) + " samples, this GPU has " +
+                       std::to_string(features_.native_msaa_max),
+           "gpu.features.native_msaa_max = " + std::to_string(s) + " makes it native");
+  }
+
+  void check_pass(const Pass& pass) {
+    for (const ImageId id : pass.sampled) check_read(pass, id);
+    if (pass.source) check_read(pass, pass.source);
+    switch (pass.kind) {
+      case PassKind::draw:
+      case PassKind::full_screen: check_attachments(pass); break;
+      case PassKind::compute: check_compute(pass); break;
+      case PassKind::clear:
+        for (const ImageId id : pass.targets) mark_written(id);
+        break;
+      case PassKind::copy:
+      case PassKind::resolve: check_transfer(pass); break;
+    }
+  }
+
+  void check_read(const Pass& pass, ImageId id) {
+    if (written_[static_cast<std::size_t>(id.index)] == 0)
+      fail("G005", "pass `" + pass.name + "` reads image " + text(graph_.image(id)) + " before any pass wrote it",
+           "clear it, or order the passes by what they read");
+    const bool attached = std::find(pass.color.begin(), pass.color.end(), id) != pass.color.end() ||
+                          (pass.depth == id && !pass.depth_read_only);
+    if (attached)
+      fail("G004", "pass `" + pass.name + "` reads image " + text(graph_.image(id)) + " while it draws into it",
+           "a feedback loop is undefined: copy the image first, or bind depth read-only");
+  }
+
+  void mark_written(ImageId id) { written_[static_cast<std::size_t>(id.index)] = 1; }
+
+  void check_attachments(const Pass& pass) {
+    if (pass.color.size() > kMaxColorTargets)
+      fail("G007", "pass `" + pass.name + "` has " + std::to_string(pass.color.size()) + " color attachments, at most " +
+                       std::to_string(kMaxColorTargets) + " are supported");
+    for (const ImageId id : pass.color) {
+      const ImageDesc& image = graph_.image(id);
+      check_size(pass, image);
+      if (info(image.format).is_depth)
+        fail("G003", "pass `" + pass.name + "` writes color to image " + text(image) + ", which has a depth format");
+      if (image.samples != pass.samples && !features_.target_independent_raster)
+        fail("G002", "pass `" + pass.name + "` rasterizes " + std::to_string(pass.samples) + " samples into image " +
+                         text(image),
+             "equal counts, or gpu.features.target_independent_raster = true");
+      mark_written(id);
+    }
+    if (pass.depth) check_depth(pass);
+    if (pass.kind == PassKind::full_screen) {
+      if (pass.fragment == nullptr) fail("G007", "full-screen pass `" + pass.name + "` has no fragment program");
+      check_program(pass, pass.fragment, pass.state, 0);
+    }
+    for (const DrawBatch& batch : pass.batches) check_batch(pass, batch);
+  }
+
+  void check_size(const Pass& pass, const ImageDesc& image) {
+    if (image.width != pass.width || image.height != pass.height)
+      fail("G001", "pass `" + pass.name + "` of " + std::to_string(pass.width) + "x" + std::to_string(pass.height) +
+                       " pixels has attachment " + text(image));
+  }
+
+  void check_depth(const Pass& pass) {
+    const ImageDesc& image = graph_.image(pass.depth);
+    check_size(pass, image);
+    if (!info(image.format).is_depth)
+      fail("G003", "pass `" + pass.name + "` uses image " + text(image) + " as depth, which has a color format");
+    if (image.samples != pass.samples)
+      fail("G002", "pass `" + pass.name + "` rasterizes " + std::to_string(pass.samples) + " samples, its depth image " +
+                       text(image) + " differs");
+    if (pass.depth_read_only && written_[static_cast<std::size_t>(pass.depth.index)] == 0)
+      fail("G005", "pass `" + pass.name + "` tests against depth image " + text(image) + " before any pass wrote it");
+    const auto writes = [](const PipelineState& s) { return s.depth.write; };
+    const bool any_write = writes(pass.state) || std::any_of(pass.batches.begin(), pass.batches.end(),
+                                                             [&](const DrawBatch& b) { return writes(b.state); });
+    if (pass.depth_read_only && any_write)
+      fail("G004", "pass `" + pass.name + "` writes depth image " + text(image) + ", which it binds read-only");
+    if (!pass.depth_read_only) mark_written(pass.depth);
+  }
+
+  void check_batch(const Pass& pass, const DrawBatch& batch) {
+    if (batch.vertex == nullptr) {
+      fail("G007", "pass `" + pass.name + "` draws without a vertex program");
+      return;
+    }
+    check_state(pass, batch.state);
+    if (batch.fragment == nullptr) {
+      if (!pass.color.empty())
+        fail("G007", "pass `" + pass.name + "` has color attachments, but draws without a fragment program");
+      return;
+    }
+    check_program(pass, batch.fragment, batch.state, batch.vertex->varying_scalars);
+  }
+
+  void check_state(const Pass& pass, const PipelineState& state) {
+    if (!state.raster.sample_positions.empty() && !features_.programmable_sample_positions)
+      fail("G006", "pass `" + pass.name + "` sets sample positions, which this GPU cannot",
+           "gpu.features.programmable_sample_positions = true");
+    if (state.raster.conservative && !features_.conservative_raster)
+      fail("G006", "pass `" + pass.name + "` rasterizes conservatively, which this GPU cannot",
+           "gpu.features.conservative_raster = true");
+    const bool needs_depth = state.depth.test || state.depth.write || state.stencil.test;
+    if (needs_depth && !pass.depth)
+      fail("G007", "pass `" + pass.name + "` tests or writes depth or stencil without a depth attachment");
+    if (state.stencil.test && pass.depth && !info(graph_.image(pass.depth).format).has_stencil)
+      fail("G003", "pass `" + pass.name + "` tests stencil in image " + text(graph_.image(pass.depth)) +
+                       ", which has none");
+    for (std::size_t i = 0; i < state.blend.size() && i < pass.color.size(); ++i) {
+      const ImageDesc& image = graph_.image(pass.color[i]);
+      if (state.blend[i].enabled && info(image.format).is_integer)
+        fail("G003", "pass `" + pass.name + "` blends into integer image " + text(image));
+    }
+  }
+
+  void check_program(const Pass& pass, const FragmentProgram* program, const PipelineState& state, int varyings) {
+    if (program == nullptr) return;
+    if (pass.kind == PassKind::full_screen) check_state(pass, state);
+    if (program->varying_scalars != varyings)
+      fail("G007", "pass `" + pass.name + "`: fragment program `" + program->name + "` reads " +
+                       std::to_string(program->varying_scalars) + " varyings, the vertex program writes " +
+                       std::to_string(varyings));
+    if (static_cast<std::size_t>(program->color_outputs) < pass.color.size())
+      fail("G007", "pass `" + pass.name + "`: fragment program `" + program->name + "` writes " +
+                       std::to_string(program->color_outputs) + " colors for " + std::to_string(pass.color.size()) +
+                       " attachments");
+  }
+
+  void check_compute(const Pass& pass) {
+    if (pass.compute == nullptr) fail("G007", "compute pass `" + pass.name + "` has no program");
+    if (pass.groups_x < 1 || pass.groups_y < 1) fail("G001", "compute pass `" + pass.name + "` has no groups");
+    for (const ImageId id : pass.targets) {
+      if (graph_.image(id).samples != 1)
+        fail("G002", "compute pass `" + pass.name + "` stores to multisampled image " + text(graph_.image(id)));
+      mark_written(id);
+    }
+  }
+
+  void check_transfer(const Pass& pass) {
+    if (!pass.source || pass.targets.size() != 1) {
+      fail("G009", "pass `" + pass.name + "` needs one source and one target");
+      return;
+    }
+    const ImageDesc& from = graph_.image(pass.source);
+    const ImageDesc& to = graph_.image(pass.targets.front());
+    if (from.width != to.width || from.height != to.height)
+      fail("G001", "pass `" + pass.name + "` from image " + text(from) + " to image " + text(to) + ": sizes differ");
+    if (pass.kind == PassKind::resolve) {
+      if (from.samples < 2 || to.samples != 1)
+        fail("G009", "pass `" + pass.name + "` resolves image " + text(from) + " to image " + text(to) +
+                         ": the source must be multisampled, the target not");
+      if (info(from.format).is_integer || info(from.format).is_depth)
+        fail("G003", "pass `" + pass.name + "` resolves image " + text(from) + ", whose values cannot be averaged");
+    } else if (from.samples != to.samples || from.format != to.format) {
+      fail("G009", "pass `" + pass.name + "` copies image " + text(from) + " to image " + text(to) +
+                       ": formats and sample counts must be equal");
+    }
+    mark_written(pass.targets.front());
+  }
+
+  void check_output() {
+    if (!graph_.output()) {
+      fail("G008", "the frame has no output image");
+      return;
+    }
+    const ImageDesc& image = graph_.image(graph_.output());
+    if (image.samples != 1) fail("G008", "output image " + text(image) + " is multisampled", "resolve it first");
+    if (info(image.format).is_depth) fail("G008", "output image " + text(image) + " has a depth format");
+    if (written_[static_cast<std::size_t>(graph_.output().index)] == 0)
+      fail("G005", "no pass writes the output image " + text(image));
+  }
+
+  const FrameGraph& graph_;
+  const GpuFeatures& features_;
+  const FunctionalConfig& functional_;
+  std::vector<char> written_;
+  std::vector<Diagnostic> errors_;
+};
+
+}  // namespace
+
+std::vector<Diagnostic> validate(const FrameGraph& graph, const GpuFeatures& features,
+                                 const FunctionalConfig& functional) {
+  return Validator(graph, features, functional).run();
+}
+
+}  // namespace hwsim::pipeline

@@ -1,0 +1,185 @@
+// What a fragment shader sees, on the host's vector registers. A shader is a struct with
+//   template <class S> static void run(S& s, const Uniforms& uniforms)
+// written once against this class and CountFragment (shade/count_fragment.h). Per-target include guard.
+#include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/shade/codec.h"
+#include "pipeline/shade/lanes-inl.h"
+#include "pipeline/shade/texture_sampler-inl.h"
+
+#if defined(HWSIM_SHADE_FRAGMENT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_SHADE_FRAGMENT_LANES_INL_H_
+#undef HWSIM_SHADE_FRAGMENT_LANES_INL_H_
+#else
+#define HWSIM_SHADE_FRAGMENT_LANES_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::pipeline::HWY_NAMESPACE {
+
+/// Counts a pass of the lanes of `mask` through a block: shared by fragment and compute contexts.
+HWY_INLINE void count_trip(BlockTrips& blocks, int block, int first_lane, LaneM mask) {
+  std::int32_t* trips = blocks.trips[static_cast<std::size_t>(block)].data();
+  if ((blocks.used >> block & 1u) == 0) {
+    blocks.used |= 1u << block;
+    for (int i = 0; i < kBatchLanes; ++i) trips[i] = 0;
+  }
+  store(load(trips + first_lane) + select(mask, LaneI(1), LaneI(0)), trips + first_lane);
+}
+
+/// Reads texels of the pass's image slots: shared by fragment and compute contexts. Coordinates are clamped.
+HWY_INLINE Vec4<LaneF> load_texel(const GpuImage& image, LaneI x, LaneI y, LaneI sample) {
+  const LaneI cx = min(max(x, LaneI(0)), LaneI(image.width - 1)), cy = min(max(y, LaneI(0)), LaneI(image.height - 1));
+  const LaneI block = shift_right<3>(cy) * LaneI(image.blocks_x) + shift_right<3>(cx);
+  const LaneI lane = (cx & LaneI(1)) | shift_left<1>(cy & LaneI(1)) | shift_left<1>(cx & LaneI(2)) |
+                     shift_left<2>(cy & LaneI(2)) | shift_left<2>(cx & LaneI(4)) | shift_left<3>(cy & LaneI(4));
+  const LaneI first = block * LaneI(static_cast<std::int32_t>(image.block_words())) +
+                      shift_left<6>(sample * LaneI(image.words)) + lane;
+  LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
+  const auto* texels = reinterpret_cast<const std::int32_t*>(image.texels.data());
+  for (int word = 0; word < image.words; ++word) words[word] = gather(texels, first + LaneI(word * kBlockLanes));
+  return decode_texel<LaneF, LaneI>(image.format, words, srgb_decode_table().data());
+}
+
+class FragmentLanes {
+ public:
+  using F = LaneF;
+  using I = LaneI;
+  using M = LaneM;
+
+  FragmentLanes(FragmentBatch& batch, int first_lane)
+      : batch_(batch), first_(first_lane),
+        valid_(mask_from_bits(batch.quad_count == kBatchQuads ? ~std::uint64_t{0}
+                                                              : (std::uint64_t{1} << (4 * batch.quad_count)) - 1,
+                              first_lane)),
+        active_(mask_from_bits(batch.active_lanes, first_lane)) {
+    const int quads = batch.quad_count;
+    const int first_quad = first_lane / 4;
+    for (int q = 1; q < kVectorLanes / 4; ++q) {
+      const int quad = first_quad + q;
+      if (quad < quads && batch.triangle[static_cast<std::size_t>(quad)] !=
+                              batch.triangle[static_cast<std::size_t>(first_quad)])
+        one_triangle_ = false;
+    }
+  }
+
+  M valid() const { return valid_; }    ///< lanes of quads, helpers included
+  M active() const { return active_; }  ///< fragments
+  const MaterialView& material() const { return *batch_.material; }
+  I pixel_x() const { return load(batch_.pixel_x.data() + first_); }
+  I pixel_y() const { return load(batch_.pixel_y.data() + first_); }
+  int sample_index() const { return batch_.sample_index; }
+  I coverage() const { return load(reinterpret_cast<const std::int32_t*>(batch_.coverage.data()) + first_); }
+  int first_lane() const { return first_; }
+  FragmentBatch& batch() { return batch_; }
+
+  /// Attribute scalar k at the shading point.
+  F attr(int k) const { return interpolate(k, batch_.b1.data(), batch_.b2.data()); }
+  Vec3<F> attr3(int k) const { return {attr(k), attr(k + 1), attr(k + 2)}; }
+  /// +1 on front faces, -1 on back faces.
+  F facing() const {
+    HWY_ALIGN float sign[kVectorLanes];
+    for (int lane = 0; lane < kVectorLanes; ++lane)
+      sign[lane] = batch_.front_facing[static_cast<std::size_t>((first_ + lane) / 4)] ? 1.0f : -1.0f;
+    return load(sign);
+  }
+
+  /// Filtered texture at attribute scalars (k, k + 1); level of detail from the derivatives at pixel centers.
+  Vec4<F> sample_texture(const TextureView* texture, int k) {
+    const TextureSampler sampler(*texture, batch_.texture_tracker, valid_);
+    const F uc = interpolate(k, batch_.b1_center.data(), batch_.b2_center.data());
+    const F vc = interpolate(k + 1, batch_.b1_center.data(), batch_.b2_center.data());
+    return sampler.sample(attr(k), attr(k + 1), ddx(uc), ddx(vc), ddy(uc), ddy(vc), batch_.tex_bilinear_probes);
+  }
+
+  /// Texel (x, y) of the pass's image slot, unfiltered; coordinates are clamped to the image.
+  Vec4<F> load_image(int slot, I x, I y, I sample) {
+    return load_texel(*batch_.resources->images[static_cast<std::size_t>(slot)], x, y, sample);
+  }
+  int image_width(int slot) const { return batch_.resources->images[static_cast<std::size_t>(slot)]->width; }
+  int image_height(int slot) const { return batch_.resources->images[static_cast<std::size_t>(slot)]->height; }
+
+  /// Runs body() if a lane of `mask` is left, and charges those lanes with the block's operations.
+  template <class Body>
+  HWY_INLINE void branch(int block, M mask, Body&& body) {
+    const M live = mask & valid_;
+    if (!any(live)) return;
+    count_trip(batch_.blocks, block, first_, live);
+    body();
+  }
+  /// As branch, for a condition that is the same for all lanes.
+  template <class Body>
+  HWY_INLINE void uniform_branch(int block, bool condition, Body&& body) {
+    if (!condition) return;
+    count_trip(batch_.blocks, block, first_, valid_);
+    body();
+  }
+  /// body(i) for i in [0, count), the lanes of `mask`; charged for each iteration.
+  template <class Body>
+  HWY_INLINE void loop(int block, int count, M mask, Body&& body) {
+    const M live = mask & valid_;
+    if (!any(live)) return;
+    for (int i = 0; i < count; ++i) {
+      count_trip(batch_.blocks, block, first_, live);
+      body(i);
+    }
+  }
+
+  void discard(M mask) {
+    batch_.discarded_lanes |= static_cast<std::uint64_t>(mask_bits(mask & active_)) << first_;
+  }
+  void output(int target, const Vec4<F>& color) {
+    store(color.x, batch_.color[target][0] + first_);
+    store(color.y, batch_.color[target][1] + first_);
+    store(color.z, batch_.color[target][2] + first_);
+    store(color.w, batch_.color[target][3] + first_);
+  }
+
+ private:
+  F interpolate(int k, const float* b1, const float* b2) const {
+    const auto first_quad = static_cast<std::size_t>(first_ / 4);
+    if (one_triangle_) {
+      const float v0 = batch_.varyings[0][first_quad][k];
+      const F d1(batch_.varyings[1][first_quad][k] - v0), d2(batch_.varyings[2][first_quad][k] - v0);
+      return (F(v0) + load(b1 + first_) * d1) + load(b2 + first_) * d2;
+    }
+    return interpolate_quads(k, b1, b2);
+  }
+
+  // The same operations in the same order, a quad at a time.
+  F interpolate_quads(int k, const float* b1, const float* b2) const {
+    const hn::FixedTag<float, 4> d4;
+    HWY_ALIGN float values[kVectorLanes];
+    for (int q = 0; q < kVectorLanes / 4; ++q) {
+      const int quad = std::min(first_ / 4 + q, batch_.quad_count - 1);
+      const auto index = static_cast<std::size_t>(quad);
+      const float v0 = batch_.varyings[0][index][k];
+      const auto d1 = hn::Set(d4, batch_.varyings[1][index][k] - v0);
+      const auto d2 = hn::Set(d4, batch_.varyings[2][index][k] - v0);
+      const int lane = first_ + 4 * q;
+      const auto sum = hn::Add(hn::Set(d4, v0), hn::Mul(hn::LoadU(d4, b1 + lane), d1));
+      hn::Store(hn::Add(sum, hn::Mul(hn::LoadU(d4, b2 + lane), d2)), d4, values + 4 * q);
+    }
+    return load(values);
+  }
+
+  FragmentBatch& batch_;
+  int first_;
+  M valid_, active_;
+  bool one_triangle_ = true;
+};
+
+/// The function of a FragmentProgram: the batch, a vector register at a time.
+template <class Shader>
+void run_fragment_shader(FragmentBatch& batch, const void* uniforms) {
+  const auto& typed = *static_cast<const typename Shader::Uniforms*>(uniforms);
+  const int lanes = 4 * batch.quad_count;
+  for (int first = 0; first < lanes; first += kVectorLanes) {
+    FragmentLanes s(batch, first);
+    Shader::run(s, typed);
+  }
+}
+
+}  // namespace hwsim::pipeline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

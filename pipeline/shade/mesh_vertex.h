@@ -1,0 +1,29 @@
+#pragma once
+// The vertex shaders of meshes. All of them compute the position by the same operations, so that depth is bit-identical
+// between passes.
+#include <glm/glm.hpp>
+
+#include "pipeline/shade/program.h"
+
+namespace hwsim::pipeline {
+
+/// Offsets of attribute scalars in the varyings of mesh_surface programs.
+struct SurfaceVaryings {
+  static constexpr int kNormal = 0;    ///< 3, world space, not normalized
+  static constexpr int kUv0 = 3;       ///< 2
+  static constexpr int kPosition = 5;  ///< 3, world space
+  static constexpr int kTangent = 8;   ///< 4: xyz world space, w handedness
+  static constexpr int kColor = 12;    ///< 4
+  static constexpr int kBasic = 8, kFull = 16;
+};
+
+struct MeshVertexUniforms {
+  glm::mat4 clip_from_world{1.0f};
+};
+
+const VertexProgram& mesh_position_program();  ///< no varyings: depth passes
+const VertexProgram& mesh_uv_program();        ///< uv0 only, at 0: alpha-tested depth passes
+const VertexProgram& mesh_surface_program();   ///< SurfaceVaryings up to kBasic
+const VertexProgram& mesh_full_program();      ///< SurfaceVaryings up to kFull
+
+}  // namespace hwsim::pipeline

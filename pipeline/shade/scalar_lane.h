@@ -1,0 +1,70 @@
+#pragma once
+// One lane: the same shader source evaluated a value at a time, for the ray-traced reference and for tests.
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "pipeline/shade/transcendental.h"
+
+namespace hwsim::pipeline {
+
+struct ScalarM {
+  bool v;
+};
+struct ScalarI {
+  std::int32_t v;
+  ScalarI() = default;
+  ScalarI(std::int32_t x) : v(x) {}  // NOLINT
+};
+struct ScalarF {
+  float v;
+  ScalarF() = default;
+  ScalarF(float x) : v(x) {}  // NOLINT
+};
+
+inline ScalarF operator+(ScalarF a, ScalarF b) { return a.v + b.v; }
+inline ScalarF operator-(ScalarF a, ScalarF b) { return a.v - b.v; }
+inline ScalarF operator*(ScalarF a, ScalarF b) { return a.v * b.v; }
+inline ScalarF operator/(ScalarF a, ScalarF b) { return a.v / b.v; }
+inline ScalarF operator-(ScalarF a) { return -a.v; }
+inline ScalarF abs(ScalarF a) { return std::fabs(a.v); }
+inline ScalarF min(ScalarF a, ScalarF b) { return a.v < b.v ? a.v : b.v; }  // as minps: b when either is NaN
+inline ScalarF max(ScalarF a, ScalarF b) { return a.v > b.v ? a.v : b.v; }
+inline ScalarF floor(ScalarF a) { return std::floor(a.v); }
+inline ScalarF sqrt(ScalarF a) { return std::sqrt(a.v); }
+inline ScalarF rsqrt(ScalarF a) { return 1.0f / std::sqrt(a.v); }
+inline ScalarM operator<(ScalarF a, ScalarF b) { return {a.v < b.v}; }
+inline ScalarM operator<=(ScalarF a, ScalarF b) { return {a.v <= b.v}; }
+inline ScalarM operator>(ScalarF a, ScalarF b) { return {a.v > b.v}; }
+inline ScalarM operator>=(ScalarF a, ScalarF b) { return {a.v >= b.v}; }
+inline ScalarM operator&(ScalarM a, ScalarM b) { return {a.v && b.v}; }
+inline ScalarM operator|(ScalarM a, ScalarM b) { return {a.v || b.v}; }
+inline ScalarM operator!(ScalarM a) { return {!a.v}; }
+inline ScalarF select(ScalarM m, ScalarF a, ScalarF b) { return m.v ? a : b; }
+inline ScalarI select(ScalarM m, ScalarI a, ScalarI b) { return m.v ? a : b; }
+inline ScalarI operator+(ScalarI a, ScalarI b) { return a.v + b.v; }
+inline ScalarI operator-(ScalarI a, ScalarI b) { return a.v - b.v; }
+inline ScalarI operator*(ScalarI a, ScalarI b) { return a.v * b.v; }
+inline ScalarI operator&(ScalarI a, ScalarI b) { return a.v & b.v; }
+inline ScalarI operator|(ScalarI a, ScalarI b) { return a.v | b.v; }
+inline ScalarI operator^(ScalarI a, ScalarI b) { return a.v ^ b.v; }
+template <int kBits>
+ScalarI shift_left(ScalarI a) { return static_cast<std::int32_t>(static_cast<std::uint32_t>(a.v) << kBits); }
+template <int kBits>
+ScalarI shift_right(ScalarI a) { return a.v >> kBits; }
+inline ScalarI min(ScalarI a, ScalarI b) { return a.v < b.v ? a.v : b.v; }
+inline ScalarI max(ScalarI a, ScalarI b) { return a.v > b.v ? a.v : b.v; }
+inline ScalarM operator<(ScalarI a, ScalarI b) { return {a.v < b.v}; }
+inline ScalarM operator>(ScalarI a, ScalarI b) { return {a.v > b.v}; }
+inline ScalarM operator==(ScalarI a, ScalarI b) { return {a.v == b.v}; }
+inline ScalarM operator!=(ScalarI a, ScalarI b) { return {a.v != b.v}; }
+inline ScalarI to_int(ScalarF a) { return static_cast<std::int32_t>(a.v); }
+inline ScalarF to_float(ScalarI a) { return static_cast<float>(a.v); }
+inline ScalarF bits_to_float(ScalarI a) { return std::bit_cast<float>(a.v); }
+inline ScalarI float_to_bits(ScalarF a) { return std::bit_cast<std::int32_t>(a.v); }
+inline ScalarF exp2(ScalarF a) { return exp2_polynomial<ScalarF, ScalarI>(a); }
+inline ScalarF log2(ScalarF a) { return log2_polynomial<ScalarF, ScalarI>(a); }
+inline ScalarF lookup(const float* table, ScalarI index) { return table[index.v]; }
+inline bool any(ScalarM m) { return m.v; }
+
+}  // namespace hwsim::pipeline
