@@ -81,6 +81,8 @@ void account_shading(const FragmentBatch& batch, const FragmentProgram& program,
   c.ps.discarded_invocations += static_cast<std::uint64_t>(__builtin_popcountll(batch.discarded_lanes));
   account_blocks(batch.blocks, program.ops, program.block_count, lanes, c);
   c.tex.bilinear_probes += batch.tex_bilinear_probes;
+  c.tex.texels += batch.image_texels;
+  c.mem.texture_read_bytes += batch.image_read_bytes;
 }
 
 }  // namespace hwsim::pipeline

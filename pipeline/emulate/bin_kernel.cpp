@@ -47,7 +47,7 @@ class BinRunner {
     w_.state = &c_.pass->state;
     w_.program = c_.pass->fragment;
     w_.uniforms = c_.pass->uniforms.get();
-    w_.late_z = false;
+    w_.late_z = w_.program->can_discard && w_.state->stencil.test;
     w_.batch.material = nullptr;
     start_batch();
     for (int y = bin_y_; y < std::min(bin_y_ + kBinPx, c_.height); y += kBlockPx)
@@ -203,7 +203,7 @@ class BinRunner {
     n.raster.visited_tiles += 1;
     for (int s = 0; s < samples_; ++s) masks[s] = inside;
     n.raster.covered_samples += static_cast<std::uint64_t>(samples_) * popcount(inside);
-    if (c_.depth != nullptr && w_.state->stencil.test) {
+    if (c_.depth != nullptr && w_.state->stencil.test && !w_.late_z) {
       const auto tested = static_cast<std::uint64_t>(samples_) * popcount(inside);
       const int block = c_.depth->block_index(x, y);
       touch_tile(*c_.depth, block, w_.current_chunk, n.zrop);
@@ -214,7 +214,7 @@ class BinRunner {
       n.zrop.early_z_tested_samples += tested;
       n.zrop.early_z_killed_samples += tested - passed;
       count_depth_traffic(tested, passed, n);
-    } else {
+    } else if (!w_.late_z) {
       n.stats.samples_passed += static_cast<std::uint64_t>(samples_) * popcount(inside);
     }
     append_tile(nullptr, nullptr, nullptr, x, y, masks, n);
@@ -346,6 +346,8 @@ class BinRunner {
     batch.discarded_lanes = 0;
     batch.blocks.used = 0;
     batch.tex_bilinear_probes = 0;
+    batch.image_texels = 0;
+    batch.image_read_bytes = 0;
     const std::uint64_t lines_before = w_.texture_tracker.missed_lines;
     w_.program->run(batch, w_.uniforms);
     PassCounters& n = w_.counters();
@@ -394,12 +396,13 @@ class BinRunner {
       std::uint8_t& mask = w_.samples[q].masks[s];
       if (mask == 0) continue;
       tested += popcount(mask);
-      const RasterTriangle& t = *w_.batch.triangle[q];
-      const float x0 = static_cast<float>(w_.batch.quad_x[q] - t.reference_x) + 0.5f + static_cast<float>(p.x) * 0.0625f;
-      const float y0 = static_cast<float>(w_.batch.quad_y[q] - t.reference_y) + 0.5f + static_cast<float>(p.y) * 0.0625f;
-      HWY_ALIGN float values[4];
-      hn::Store(plane_at(t.z, hn::Add(hn::Load(d, kQuadX), hn::Set(d, x0)), hn::Add(hn::Load(d, kQuadY), hn::Set(d, y0))),
-                d, values);
+      HWY_ALIGN float values[4] = {};
+      if (const RasterTriangle* t = w_.batch.triangle[q]; t != nullptr) {  // null in full-screen passes: stencil only
+        const float x0 = static_cast<float>(w_.batch.quad_x[q] - t->reference_x) + 0.5f + static_cast<float>(p.x) * 0.0625f;
+        const float y0 = static_cast<float>(w_.batch.quad_y[q] - t->reference_y) + 0.5f + static_cast<float>(p.y) * 0.0625f;
+        const auto x = hn::Add(hn::Load(d, kQuadX), hn::Set(d, x0)), y = hn::Add(hn::Load(d, kQuadY), hn::Set(d, y0));
+        hn::Store(plane_at(t->z, x, y), d, values);
+      }
       touch_tile(*c_.depth, w_.block[q], w_.current_chunk, n.zrop);
       mask = test_quad(state, q, s, values, mask);
       passed += popcount(mask);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "hwsim/counters.h"
 #include "pipeline/emulate/gpu_image.h"
 #include "pipeline/raster/sample_pattern.h"
 #include "pipeline/raster/triangle.h"
@@ -24,7 +25,7 @@ struct MaterialView {
   float metallic = 1.0f, roughness = 1.0f, normal_scale = 1.0f, occlusion_strength = 1.0f, alpha_cutoff = 0.5f;
   bool alpha_test = false;
   bool double_sided = false;
-  bool has_tangents = false, has_colors = false;
+  bool has_colors = false;  ///< a mesh that uses it has vertex colors
   int index = 0;
   const TextureView* base_color_texture = nullptr;  ///< null: none
   const TextureView* metallic_roughness_texture = nullptr;
@@ -36,6 +37,7 @@ struct MaterialView {
 /// Image and buffer slots of a pass.
 struct ResourceView {
   std::array<const GpuImage*, kMaxImageSlots> images{};
+  std::array<GpuImage*, 2> targets{};  ///< compute passes: images to store to
   std::array<std::uint32_t*, kMaxBufferSlots> buffers{};
   std::array<std::uint64_t, kMaxBufferSlots> buffer_words{};
 };
@@ -73,6 +75,8 @@ struct FragmentBatch {
   std::uint64_t discarded_lanes = 0;
   BlockTrips blocks;
   std::uint64_t tex_bilinear_probes = 0;  ///< beyond the first of each request
+  std::uint64_t image_texels = 0;         ///< unfiltered texels loaded from the pass's images
+  std::uint64_t image_read_bytes = 0;     ///< their bytes
 };
 
 /// Up to 64 vertices in a vertex shader.
@@ -92,17 +96,17 @@ struct VertexBatch {
   alignas(64) float varyings[kMaxVaryings][kBatchLanes];
 };
 
-/// A compute group.
+/// A compute group. Its program runs phase after phase over all of the group's invocations; what would be a barrier in
+/// a shader is the end of a phase here.
 struct GroupBatch {
   int group_x = 0, group_y = 0;
-  int width = 0, height = 0;          ///< invocations of the group
-  int image_width = 0, image_height = 0;
+  int width = 0, height = 0;              ///< invocations of the group
+  int image_width = 0, image_height = 0;  ///< of the pass
   const ResourceView* resources = nullptr;
   std::uint32_t* group_memory = nullptr;  ///< zeroed before the group starts
-  // Trips are kept for each of the group's invocations, 64 at a time in lane order.
-  BlockTrips blocks;
-  void (*end_wave)(GroupBatch& group, int first_invocation) = nullptr;  ///< accounts `blocks` and clears it
-  void* accounting = nullptr;
+  const ComputeProgram* program = nullptr;
+  PassCounters* counters = nullptr;
+  BlockTrips blocks;                      ///< of the 64 invocations of the current wave
 };
 
 }  // namespace hwsim::pipeline

@@ -9,6 +9,17 @@ namespace {
 
 bool overwrites(PassKind kind) { return kind == PassKind::clear || kind == PassKind::copy || kind == PassKind::resolve; }
 
+bool writes_stencil(const PipelineState& state) {
+  const StencilState& s = state.stencil;
+  return s.test && (s.on_pass != StencilOp::keep || s.on_fail != StencilOp::keep || s.on_depth_fail != StencilOp::keep);
+}
+
+/// Read-only depth may still have its stencil written.
+bool writes_stencil(const Pass& pass) {
+  return writes_stencil(pass.state) || std::any_of(pass.batches.begin(), pass.batches.end(),
+                                                   [](const DrawBatch& b) { return writes_stencil(b.state); });
+}
+
 /// Images and buffers in one index space: buffers follow the images.
 struct Access {
   std::vector<int> reads, writes;
@@ -18,7 +29,8 @@ Access access(const FrameGraph& graph, const Pass& pass) {
   const int images = static_cast<int>(graph.images().size());
   Access a;
   for (const ImageId id : pass.color) a.writes.push_back(id.index);
-  if (pass.depth) (pass.depth_read_only ? a.reads : a.writes).push_back(pass.depth.index);
+  if (pass.depth && pass.depth_read_only) a.reads.push_back(pass.depth.index);
+  if (pass.depth && (!pass.depth_read_only || writes_stencil(pass))) a.writes.push_back(pass.depth.index);
   for (const ImageId id : pass.sampled) a.reads.push_back(id.index);
   for (const ImageId id : pass.targets) a.writes.push_back(id.index);
   if (pass.source) a.reads.push_back(pass.source.index);

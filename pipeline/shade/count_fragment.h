@@ -58,6 +58,8 @@ class CountFragment {
     enter(block, [&] { body(0); });
     blocks_[static_cast<std::size_t>(block)].alu += 2;  // the counter and its comparison
   }
+  std::size_t loop_count(int) const { return 1; }
+  void store_image(int, I, I, I, const Vec4<F>&, M) { current_->store += 1; }
   void discard(M) { current_->alu += 1; }
   void output(int target, const Vec4<F>&) { color_outputs_ = std::max(color_outputs_, target + 1); }
 

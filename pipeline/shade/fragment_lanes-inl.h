@@ -93,7 +93,11 @@ class FragmentLanes {
 
   /// Texel (x, y) of the pass's image slot, unfiltered; coordinates are clamped to the image.
   Vec4<F> load_image(int slot, I x, I y, I sample) {
-    return load_texel(*batch_.resources->images[static_cast<std::size_t>(slot)], x, y, sample);
+    const GpuImage& image = *batch_.resources->images[static_cast<std::size_t>(slot)];
+    const auto lanes = static_cast<std::uint64_t>(__builtin_popcount(mask_bits(valid_)));
+    batch_.image_texels += lanes;
+    batch_.image_read_bytes += lanes * info(image.format).bytes;
+    return load_texel(image, x, y, sample);
   }
   int image_width(int slot) const { return batch_.resources->images[static_cast<std::size_t>(slot)]->width; }
   int image_height(int slot) const { return batch_.resources->images[static_cast<std::size_t>(slot)]->height; }
@@ -123,6 +127,9 @@ class FragmentLanes {
       body(i);
     }
   }
+
+  /// The number of elements of a uniform array: at least one where a shader is only counted.
+  std::size_t loop_count(int count) const { return static_cast<std::size_t>(count); }
 
   void discard(M mask) {
     batch_.discarded_lanes |= static_cast<std::uint64_t>(mask_bits(mask & active_)) << first_;

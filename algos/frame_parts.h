@@ -1,0 +1,60 @@
+#pragma once
+// What techniques share: camera, lights, shadow map, lists of draws, and the forward pass.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "algos/shaders/forward.h"
+#include "algos/technique.h"
+
+namespace hwsim::algos {
+
+/// Draws by how they are rendered.
+struct DrawLists {
+  std::vector<pipeline::DrawCall> opaque;
+  std::vector<pipeline::DrawCall> mask;   ///< alpha-tested
+  std::vector<pipeline::DrawCall> blend;  ///< back to front
+};
+
+struct FrameParts {
+  const FrameRequest* request = nullptr;
+  pipeline::Camera camera;
+  glm::mat4 clip_from_world{1.0f};
+  DrawLists draws;
+  bool full_varyings = false;  ///< some mesh has tangents or vertex colors
+  pipeline::LightingUniforms lighting;
+  pipeline::ImageId shadow_map;  ///< none without a shadow caster
+};
+
+/// Adds the shadow map's passes, if there is a caster, and gathers the rest. Point lights of the request are added.
+FrameParts prepare_frame(pipeline::FrameGraph& graph, const FrameRequest& request);
+
+/// A target of a forward pass.
+struct ForwardTarget {
+  pipeline::ImageId color, depth;
+  int width = 0, height = 0, samples = 1;
+  bool centroid = false, sample_rate = false;
+  glm::vec2 jitter_px{0.0f};  ///< samples move by this (x right, y down), so geometry moves against it
+};
+
+/// Background and depth cleared, then everything drawn: opaque, alpha-tested, blended.
+void add_forward(pipeline::FrameGraph& graph, const FrameParts& parts, const std::string& prefix,
+                 const ForwardTarget& target);
+
+/// Draws of blended materials into lit color, depth tested and not written.
+void add_blended(pipeline::FrameGraph& graph, const FrameParts& parts, const std::string& name,
+                 const ForwardTarget& target);
+
+/// Depth-stencil image and color image in the frame's size times `scale`.
+ForwardTarget make_forward_target(pipeline::FrameGraph& graph, const std::string& name, int width, int height,
+                                  int samples, Format color = Format::rgba8_srgb, Format depth = Format::d24_unorm_s8);
+
+/// The final image: rgba8_srgb, 1x.
+pipeline::ImageId add_output(pipeline::FrameGraph& graph);
+
+/// Camera matrix with sub-pixel jitter (techniques 1.2).
+glm::mat4 jittered(const glm::mat4& clip_from_world, glm::vec2 jitter_px, int width, int height);
+
+pipeline::PipelineState opaque_state(const ForwardTarget& target);
+
+}  // namespace hwsim::algos

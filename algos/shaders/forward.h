@@ -1,0 +1,19 @@
+#pragma once
+#include "pipeline/shade/lighting.h"
+#include "pipeline/shade/program.h"
+
+namespace hwsim::algos {
+
+struct ForwardUniforms {
+  pipeline::LightingUniforms lighting;
+  bool full_varyings = false;  ///< tangents and vertex colors are interpolated
+};
+
+/// Material and all lights in one pass; color 0 is linear RGBA. `alpha_test`: discards below the material's cutoff.
+const pipeline::FragmentProgram& forward_program(bool full_varyings, bool alpha_test);
+
+struct AlphaTestUniforms {};
+/// Discards below the material's cutoff; no color. For depth-only passes over mesh_uv_program.
+const pipeline::FragmentProgram& alpha_test_program();
+
+}  // namespace hwsim::algos

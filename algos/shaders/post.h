@@ -1,0 +1,19 @@
+#pragma once
+// Full-screen programs of supersampling.
+#include "pipeline/shade/program.h"
+
+namespace hwsim::algos {
+
+struct DownsampleUniforms {
+  int factor = 1;  ///< source pixels a target pixel, each axis
+};
+/// Box mean of factor x factor pixels of image slot 0, in linear light.
+const pipeline::FragmentProgram& downsample_program();
+
+struct ScaleUniforms {
+  float scale = 1.0f;
+};
+/// Image slot 0 times a constant: accumulation (with additive blending) and its normalization.
+const pipeline::FragmentProgram& scale_program();
+
+}  // namespace hwsim::algos

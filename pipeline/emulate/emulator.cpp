@@ -1,0 +1,370 @@
+#include "pipeline/emulate/emulator.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <memory>
+#include <set>
+
+#include "pipeline/base/parallel.h"
+#include "pipeline/depth/depth_format.h"
+#include "pipeline/emulate/geometry.h"
+#include "pipeline/emulate/material_views.h"
+#include "pipeline/emulate/transfer.h"
+
+namespace hwsim::pipeline {
+namespace {
+
+constexpr std::uint64_t kSegmentTriangles = 262144;  // bounds memory: about 150 bytes a triangle that is drawn
+constexpr std::uint64_t kFullScreenBands = 64;
+
+/// Runs the passes of one compiled graph in order. Images live from their first pass to their last.
+class FrameRunner {
+ public:
+  FrameRunner(const FrameGraph& graph, const CompiledGraph& compiled, const FunctionalConfig& functional,
+              const EmulationOptions& options)
+      : graph_(graph), compiled_(compiled), functional_(functional), options_(options), textures_(graph.scene()),
+        materials_(graph.scene(), textures_), images_(graph.images().size()), buffers_(graph.buffers().size()),
+        cleared_(graph.images().size(), 0), workers_(static_cast<std::size_t>(std::max(1, options.jobs))),
+        heat_blocks_x_((graph.width() + kBlockPx - 1) / kBlockPx) {
+    const int heat_blocks_y = (graph.height() + kBlockPx - 1) / kBlockPx;
+    heat_.resize(static_cast<std::size_t>(heat_blocks_x_ * heat_blocks_y) * kBlockLanes);
+  }
+
+  void run(Emulation& result) {
+    for (std::size_t position = 0; position < compiled_.order.size(); ++position) {
+      const Pass& pass = graph_.passes()[static_cast<std::size_t>(compiled_.order[position])];
+      if (options_.progress) options_.progress(static_cast<double>(position) / static_cast<double>(compiled_.order.size()), pass.name);
+      allocate(static_cast<int>(position));
+      PassWork work = describe(pass, compiled_.barrier_before[position] != 0);
+      run_pass(pass, work);
+      result.trace.passes.push_back(std::move(work));
+      release(static_cast<int>(position));
+    }
+    if (options_.progress) options_.progress(1.0, "");
+    result.color = read_output();
+    result.shading_heat = read_heat();
+    result.skipped["frustum"] = skipped_draws_;
+    for (const BinWorker& worker : workers_) result.skipped["accepted_tiles"] += worker.accepted_tiles_skipped;
+    result.skipped["passes"] = compiled_.culled.size();
+  }
+
+ private:
+  GpuImage& image(ImageId id) { return *images_[static_cast<std::size_t>(id.index)]; }
+
+  void allocate(int position) {
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+      if (compiled_.images[i].first_pass != position) continue;
+      const ImageDesc& desc = graph_.images()[i];
+      images_[i] = std::make_unique<GpuImage>(desc.format, desc.width, desc.height, desc.samples);
+    }
+    for (std::size_t i = 0; i < buffers_.size(); ++i)
+      if (compiled_.buffers[i].first_pass == position) buffers_[i].assign(graph_.buffers()[i].words, 0);
+  }
+
+  void release(int position) {
+    for (std::size_t i = 0; i < images_.size(); ++i)
+      if (compiled_.images[i].last_pass == position && static_cast<int>(i) != graph_.output().index) images_[i].reset();
+    for (std::size_t i = 0; i < buffers_.size(); ++i)
+      if (compiled_.buffers[i].last_pass == position) std::vector<std::uint32_t>().swap(buffers_[i]);
+  }
+
+  PassWork describe(const Pass& pass, bool barrier) {
+    PassWork work;
+    work.name = pass.name;
+    work.kind = pass.kind;
+    work.width_px = pass.width;
+    work.height_px = pass.height;
+    work.raster_samples = pass.samples;
+    work.barrier_before = barrier;
+    if (pass.depth) {
+      work.depth_format = graph_.image(pass.depth).format;
+      work.depth_samples = graph_.image(pass.depth).samples;
+      work.depth_cleared_before = cleared_[static_cast<std::size_t>(pass.depth.index)] != 0;
+    }
+    work.color_cleared_before = !pass.color.empty();
+    const std::vector<ImageId>& written = pass.color.empty() ? pass.targets : pass.color;
+    for (std::size_t i = 0; i < written.size(); ++i) {
+      const ImageDesc& desc = graph_.image(written[i]);
+      bool blended = i < pass.state.blend.size() && pass.state.blend[i].enabled;
+      for (const DrawBatch& batch : pass.batches)
+        blended = blended || (i < batch.state.blend.size() && batch.state.blend[i].enabled);
+      work.color_targets.push_back({desc.format, desc.samples, blended});
+      work.color_cleared_before = work.color_cleared_before && cleared_[static_cast<std::size_t>(written[i].index)] != 0;
+    }
+    work.sample_rate = pass.state.raster.sample_rate;
+    for (const DrawBatch& batch : pass.batches) {
+      work.sample_rate = work.sample_rate || batch.state.raster.sample_rate;
+      if (batch.vertex != nullptr) work.attribute_scalars = std::max(work.attribute_scalars, batch.vertex->varying_scalars);
+    }
+    return work;
+  }
+
+  void run_pass(const Pass& pass, PassWork& work) {
+    switch (pass.kind) {
+      case PassKind::draw: run_draw(pass, work); break;
+      case PassKind::full_screen: run_full_screen(pass, work); break;
+      case PassKind::compute: run_compute(pass, work); break;
+      default: run_transfer(pass, work); break;
+    }
+    for (const ImageId id : pass.color) cleared_[static_cast<std::size_t>(id.index)] = 0;
+    if (pass.depth && !pass.depth_read_only) cleared_[static_cast<std::size_t>(pass.depth.index)] = 0;
+    for (const ImageId id : pass.targets)
+      cleared_[static_cast<std::size_t>(id.index)] = pass.kind == PassKind::clear ? 1 : 0;
+  }
+
+  PassContext make_context(const Pass& pass) {
+    PassContext c;
+    c.pass = &pass;
+    c.width = pass.width;
+    c.height = pass.height;
+    c.samples = pass.samples;
+    c.bins_x = (pass.width + kBinPx - 1) / kBinPx;
+    c.bins_y = (pass.height + kBinPx - 1) / kBinPx;
+    c.skip = options_.skip;
+    if (pass.depth) {
+      c.depth = &image(pass.depth);
+      c.depth_scale = depth_scale(c.depth->format);
+      c.depth_bytes = info(c.depth->format).bytes;
+    }
+    for (const ImageId id : pass.color) c.color.push_back(&image(id));
+    bind(pass, c.resources);
+    set_positions(pass, c);
+    set_heat(pass, c);
+    return c;
+  }
+
+  void bind(const Pass& pass, ResourceView& resources) {
+    for (std::size_t i = 0; i < pass.sampled.size(); ++i) resources.images[i] = &image(pass.sampled[i]);
+    for (std::size_t i = 0; i < pass.targets.size() && i < resources.targets.size(); ++i)
+      resources.targets[i] = &image(pass.targets[i]);
+    for (std::size_t i = 0; i < pass.storage.size(); ++i) {
+      std::vector<std::uint32_t>& words = buffers_[static_cast<std::size_t>(pass.storage[i].index)];
+      resources.buffers[i] = words.data();
+      resources.buffer_words[i] = words.size();
+    }
+  }
+
+  static void set_positions(const Pass& pass, PassContext& c) {
+    c.positions = standard_sample_positions(pass.samples);
+    const PipelineState& state = pass.batches.empty() ? pass.state : pass.batches.front().state;
+    if (!state.raster.sample_positions.empty()) c.positions = state.raster.sample_positions;
+    const auto [left, right] = std::minmax_element(c.positions.begin(), c.positions.end(),
+                                                   [](SamplePosition a, SamplePosition b) { return a.x < b.x; });
+    const auto [top, bottom] = std::minmax_element(c.positions.begin(), c.positions.end(),
+                                                   [](SamplePosition a, SamplePosition b) { return a.y < b.y; });
+    c.sample_min_x = left->x;
+    c.sample_max_x = right->x;
+    c.sample_min_y = top->y;
+    c.sample_max_y = bottom->y;
+  }
+
+  // Shading at a multiple of the frame's size (supersampling) counts for the pixel that it ends in; other sizes
+  // (shadow maps) do not count.
+  void set_heat(const Pass& pass, PassContext& c) {
+    for (int shift = 0; shift < 5; ++shift) {
+      if (pass.width != graph_.width() << shift || pass.height != graph_.height() << shift) continue;
+      c.heat = heat_.data();
+      c.heat_blocks_x = heat_blocks_x_;
+      c.heat_shift = shift;
+    }
+  }
+
+  void start_workers(std::size_t chunk_count, PassContext& c) {
+    c.chunk_count = chunk_count;
+    for (BinWorker& worker : workers_) {
+      worker.chunks.assign(chunk_count, PassCounters{});
+      worker.used_lines.assign(textures_.line_count() / 64 + 1, 0);
+      worker.texture_tracker.used_lines = &worker.used_lines;
+      worker.texture_tracker.missed_lines = 0;
+    }
+    for (GpuImage* target : c.color) std::fill(target->touched_chunk.begin(), target->touched_chunk.end(), 0);
+    if (c.depth != nullptr) std::fill(c.depth->touched_chunk.begin(), c.depth->touched_chunk.end(), 0);
+  }
+
+  // Integer sums: the same whichever worker counted.
+  void finish_workers(const Pass& pass, PassWork& work) {
+    work.chunks.assign(workers_.front().chunks.size(), PassCounters{});
+    for (const BinWorker& worker : workers_)
+      for (std::size_t i = 0; i < work.chunks.size(); ++i) work.chunks[i] += worker.chunks[i];
+    std::uint64_t first_lines = 0;
+    for (std::size_t i = 0; i < workers_.front().used_lines.size(); ++i) {
+      std::uint64_t used = 0;
+      for (const BinWorker& worker : workers_) used |= worker.used_lines[i];
+      first_lines += static_cast<std::uint64_t>(__builtin_popcountll(used));
+    }
+    std::uint64_t image_lines = 0;
+    for (const ImageId id : pass.sampled) image_lines += allocated_bytes(graph_.image(id)) / 64;
+    for (PassCounters& n : work.chunks) {
+      const std::uint64_t loaded_lines = (n.mem.texture_read_bytes + 63) / 64;
+      const std::uint64_t first_of_textures = std::min(first_lines, n.tex.touched_lines);
+      const std::uint64_t first_of_images = std::min(image_lines, loaded_lines);
+      first_lines -= first_of_textures;
+      image_lines -= first_of_images;
+      n.tex.touched_lines += loaded_lines;
+      n.tex.first_touched_lines += first_of_textures + first_of_images;
+      n.tex.texels += 4 * n.tex.bilinear_probes;
+      n.mem.texture_read_bytes += 16 * n.tex.bilinear_probes;
+    }
+  }
+
+  void run_draw(const Pass& pass, PassWork& work) {
+    PassContext c = make_context(pass);
+    c.draws = materials_.make_draws(pass, graph_.scene());
+    std::uint64_t triangles = 0;
+    for (DrawInfo& draw : c.draws) {
+      draw.first_primitive = static_cast<std::uint32_t>(triangles);
+      triangles += draw.triangle_count();
+    }
+    c.chunk_primitives = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(triangles / 256, 32, 4096));
+    start_workers(std::max<std::uint64_t>(1, (triangles + c.chunk_primitives - 1) / c.chunk_primitives), c);
+    count_draws(c, work);
+    const GeometryOptions geometry{options_.jobs, functional_.post_transform_cache_entries, options_.skip.frustum};
+    std::uint32_t first = 0;
+    while (first < c.draws.size()) {
+      std::uint32_t last = first;
+      for (std::uint64_t n = 0; last < c.draws.size() && n < kSegmentTriangles; ++last) n += c.draws[last].triangle_count();
+      Segment segment = make_segment(c, first, last);
+      skipped_draws_ += run_geometry(c, segment, geometry, workers_);
+      parallel_for(static_cast<std::size_t>(c.bins_x * c.bins_y), options_.jobs, [&](std::size_t bin, int worker) {
+        run_bin(c, segment, static_cast<int>(bin), workers_[static_cast<std::size_t>(worker)]);
+      });
+      first = last;
+    }
+    finish_workers(pass, work);
+  }
+
+  void count_draws(const PassContext& c, PassWork& work) {
+    std::set<const Mesh::Part*> parts;
+    const DrawInfo* before = nullptr;
+    for (const DrawInfo& draw : c.draws) {
+      const std::uint32_t chunk = std::min<std::uint32_t>(draw.first_primitive / c.chunk_primitives,
+                                                          static_cast<std::uint32_t>(c.chunk_count) - 1);
+      PassCounters& n = workers_.front().chunks[chunk];
+      n.fe.draws += 1;
+      if (before == nullptr || before->batch != draw.batch || before->material != draw.material) n.fe.state_changes += 1;
+      n.mem.constant_read_bytes += 64 + 36 + sizeof(MaterialView);  // transforms and material, as a driver would bind
+      before = &draw;
+      if (!parts.insert(draw.part).second) continue;
+      work.unique_index_bytes += std::uint64_t{draw.part->index_count} * static_cast<std::uint64_t>(std::max(2, draw.mesh->index_bytes));
+      work.unique_vertex_bytes += std::uint64_t{draw.vertex_count} * static_cast<std::uint64_t>(draw.mesh->vertex_bytes);
+    }
+  }
+
+  void run_full_screen(const Pass& pass, PassWork& work) {
+    PassContext c = make_context(pass);
+    const auto bins = static_cast<std::uint64_t>(c.bins_x) * static_cast<std::uint64_t>(c.bins_y);
+    const std::uint64_t bands = std::min(bins, kFullScreenBands);
+    start_workers(bands, c);
+    workers_.front().chunks[0].fe.draws += 1;
+    workers_.front().chunks[0].fe.state_changes += 1;
+    workers_.front().chunks[0].stats.input_assembly_vertices += 3;  // one triangle that covers the screen
+    workers_.front().chunks[0].stats.vertex_shader_invocations += 3;
+    parallel_for(bins, options_.jobs, [&](std::size_t bin, int worker) {
+      BinWorker& w = workers_[static_cast<std::size_t>(worker)];
+      w.current_chunk = static_cast<std::uint32_t>(bin * bands / bins);
+      run_full_screen_bin(c, static_cast<int>(bin), w);
+    });
+    finish_workers(pass, work);
+  }
+
+  void run_compute(const Pass& pass, PassWork& work) {
+    PassContext c = make_context(pass);
+    const auto groups = static_cast<std::uint64_t>(pass.groups_x) * static_cast<std::uint64_t>(pass.groups_y);
+    const std::uint64_t bands = std::min(groups, kFullScreenBands);
+    start_workers(bands, c);
+    workers_.front().chunks[0].fe.draws += 1;
+    workers_.front().chunks[0].fe.state_changes += 1;
+    std::vector<std::vector<std::uint32_t>> memory(
+        workers_.size(), std::vector<std::uint32_t>(static_cast<std::size_t>(pass.compute->group_memory_bytes) / 4 + 1));
+    std::vector<std::unique_ptr<GroupBatch>> batches;
+    for (std::size_t i = 0; i < workers_.size(); ++i) batches.push_back(std::make_unique<GroupBatch>());
+    parallel_for(groups, options_.jobs, [&](std::size_t group, int worker) {
+      const auto w = static_cast<std::size_t>(worker);
+      GroupBatch& batch = *batches[w];
+      std::fill(memory[w].begin(), memory[w].end(), 0);
+      batch.group_x = static_cast<int>(group) % pass.groups_x;
+      batch.group_y = static_cast<int>(group) / pass.groups_x;
+      batch.width = pass.compute->group_width;
+      batch.height = pass.compute->group_height;
+      batch.image_width = pass.width;
+      batch.image_height = pass.height;
+      batch.resources = &c.resources;
+      batch.group_memory = memory[w].data();
+      batch.program = pass.compute;
+      batch.counters = &workers_[w].chunks[group * bands / groups];
+      batch.counters->stats.compute_shader_invocations += static_cast<std::uint64_t>(batch.width * batch.height);
+      pass.compute->run(batch, pass.uniforms.get());
+    });
+    finish_workers(pass, work);
+    PassCounters storage;
+    for (const PassCounters& n : work.chunks) storage += n;
+    for (const BufferId id : pass.storage) work.unique_storage_bytes += allocated_bytes(graph_.buffer(id));
+    for (const ImageId id : pass.targets) work.unique_storage_bytes += allocated_bytes(graph_.image(id));
+    work.unique_storage_bytes =
+        std::min(work.unique_storage_bytes, storage.mem.storage_read_bytes + storage.mem.storage_write_bytes);
+  }
+
+  void run_transfer(const Pass& pass, PassWork& work) {
+    std::vector<GpuImage*> targets;
+    for (const ImageId id : pass.targets) targets.push_back(&image(id));
+    const GpuImage* source = pass.source ? &image(pass.source) : nullptr;
+    for (GpuImage* target : targets) {
+      if (pass.kind == PassKind::clear) clear_image(*target, pass, options_.jobs);
+      if (pass.kind == PassKind::copy) copy_image(*source, *target);
+      if (pass.kind == PassKind::resolve) resolve_image(*source, *target, options_.jobs);
+    }
+    if (source != nullptr) work.raster_samples = source->samples;
+    work.chunks = count_transfer(pass, source, targets);
+  }
+
+  Image read_output() {
+    const GpuImage& from = image(graph_.output());
+    Image out(from.width, from.height);
+    parallel_for(static_cast<std::size_t>(out.height), options_.jobs, [&](std::size_t y, int) {
+      for (int x = 0; x < out.width; ++x) read_texel(from, x, static_cast<int>(y), 0, &out.at(x, static_cast<int>(y))[0]);
+    });
+    return out;
+  }
+
+  Image read_heat() const {
+    Image out(graph_.width(), graph_.height());
+    for (int y = 0; y < out.height; ++y)
+      for (int x = 0; x < out.width; ++x)
+        out.at(x, y).x = static_cast<float>(heat_[static_cast<std::size_t>(
+            ((y >> 3) * heat_blocks_x_ + (x >> 3)) * kBlockLanes + lane_of(x & 7, y & 7))]);
+    return out;
+  }
+
+  const FrameGraph& graph_;
+  const CompiledGraph& compiled_;
+  const FunctionalConfig& functional_;
+  const EmulationOptions& options_;
+  TextureStore textures_;
+  MaterialViews materials_;
+  std::vector<std::unique_ptr<GpuImage>> images_;
+  std::vector<std::vector<std::uint32_t>> buffers_;
+  std::vector<char> cleared_;  ///< images that nothing was drawn into since their clear
+  std::vector<BinWorker> workers_;
+  int heat_blocks_x_;
+  std::vector<std::uint32_t> heat_;
+  std::uint64_t skipped_draws_ = 0;
+};
+
+}  // namespace
+
+Emulation emulate(const FrameGraph& graph, const GpuFeatures& features, const FunctionalConfig& functional,
+                  const EmulationOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const CompiledGraph compiled = compile(graph, features, functional);
+  Emulation result;
+  result.trace.scene = graph.scene().name;
+  result.trace.width_px = graph.width();
+  result.trace.height_px = graph.height();
+  result.trace.peak_memory_bytes = compiled.peak_bytes;
+  FrameRunner(graph, compiled, functional, options).run(result);
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace hwsim::pipeline

@@ -1,0 +1,88 @@
+#include "pipeline/emulate/material_views.h"
+
+#include <algorithm>
+#include <cstring>
+#include <glm/gtc/matrix_inverse.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+namespace hwsim::pipeline {
+namespace {
+
+void set_transform(const glm::mat4& world_from_local, DrawInfo& draw) {
+  std::memcpy(draw.world_from_local, glm::value_ptr(world_from_local), sizeof(draw.world_from_local));
+  const glm::mat3 linear(world_from_local);
+  const float determinant = glm::determinant(linear);
+  draw.mirrored = determinant < 0.0f;
+  // The cofactor matrix is the inverse transpose times the determinant: it needs no division, so it also serves
+  // transforms that flatten; the sign keeps normals on their side.
+  const glm::mat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                           glm::cross(linear[0], linear[1]));
+  const glm::mat3 normal = cofactor * (draw.mirrored ? -1.0f : 1.0f);
+  std::memcpy(draw.normal_from_local, glm::value_ptr(normal), sizeof(draw.normal_from_local));
+}
+
+void set_culling(CullMode cull, bool double_sided, DrawInfo& draw) {
+  const bool back = cull == CullMode::back && !double_sided, front = cull == CullMode::front;
+  draw.cull_back = draw.mirrored ? front : back;
+  draw.cull_front = draw.mirrored ? back : front;
+}
+
+}  // namespace
+
+MaterialView make_material_view(const Material& material, int index, const TextureStore& textures) {
+  MaterialView view;
+  for (int i = 0; i < 4; ++i) view.base_color[i] = material.base_color[i];
+  for (int i = 0; i < 3; ++i) view.emissive[i] = material.emissive[i];
+  view.metallic = material.metallic;
+  view.roughness = material.roughness;
+  view.normal_scale = material.normal_scale;
+  view.occlusion_strength = material.occlusion_strength;
+  view.alpha_cutoff = material.alpha_cutoff;
+  view.alpha_test = material.alpha_mode == AlphaMode::mask;
+  view.double_sided = material.double_sided;
+  view.index = index;
+  view.base_color_texture = textures.view(material.base_color_texture);
+  view.metallic_roughness_texture = textures.view(material.metallic_roughness_texture);
+  view.normal_texture = textures.view(material.normal_texture);
+  view.emissive_texture = textures.view(material.emissive_texture);
+  view.occlusion_texture = textures.view(material.occlusion_texture);
+  return view;
+}
+
+MaterialViews::MaterialViews(const Scene& scene, const TextureStore& textures) {
+  for (std::size_t i = 0; i < scene.materials.size(); ++i)
+    views_.push_back(make_material_view(scene.materials[i], static_cast<int>(i), textures));
+  for (const Mesh& mesh : scene.meshes) {
+    std::vector<VertexRange>& of_mesh = ranges_.emplace_back();
+    for (const Mesh::Part& part : mesh.parts) {
+      if (!mesh.colors.empty()) views_[static_cast<std::size_t>(part.material)].has_colors = true;
+      const auto first = mesh.indices.begin() + part.first_index;
+      const auto [low, high] = std::minmax_element(first, first + part.index_count);
+      of_mesh.push_back(part.index_count == 0 ? VertexRange{} : VertexRange{*low, *high - *low + 1});
+    }
+  }
+}
+
+std::vector<DrawInfo> MaterialViews::make_draws(const Pass& pass, const Scene& scene) const {
+  std::vector<DrawInfo> draws;
+  for (const DrawBatch& batch : pass.batches) {
+    for (const DrawCall& call : batch.draws) {
+      const Instance& instance = scene.instances[static_cast<std::size_t>(call.instance)];
+      const auto mesh = static_cast<std::size_t>(instance.mesh);
+      const auto part = static_cast<std::size_t>(call.part);
+      DrawInfo draw;
+      draw.batch = &batch;
+      draw.mesh = &scene.meshes[mesh];
+      draw.part = &draw.mesh->parts[part];
+      draw.material = &views_[static_cast<std::size_t>(draw.part->material)];
+      draw.first_vertex = ranges_[mesh][part].first;
+      draw.vertex_count = ranges_[mesh][part].count;
+      set_transform(instance.world_from_local, draw);
+      set_culling(batch.state.raster.cull, draw.material->double_sided, draw);
+      draws.push_back(draw);
+    }
+  }
+  return draws;
+}
+
+}  // namespace hwsim::pipeline

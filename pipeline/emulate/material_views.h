@@ -1,0 +1,25 @@
+#pragma once
+// Materials as shaders see them, and draws ready to run.
+#include <vector>
+
+#include "pipeline/emulate/segment.h"
+#include "pipeline/shade/texture_view.h"
+
+namespace hwsim::pipeline {
+
+MaterialView make_material_view(const Material& material, int index, const TextureStore& textures);
+
+class MaterialViews {
+ public:
+  MaterialViews(const Scene& scene, const TextureStore& textures);
+  std::vector<DrawInfo> make_draws(const Pass& pass, const Scene& scene) const;
+
+ private:
+  std::vector<MaterialView> views_;
+  struct VertexRange {
+    std::uint32_t first = 0, count = 0;
+  };
+  std::vector<std::vector<VertexRange>> ranges_;  ///< of each mesh and part
+};
+
+}  // namespace hwsim::pipeline

@@ -1,0 +1,120 @@
+#include "pipeline/emulate/transfer.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "pipeline/base/parallel.h"
+#include "pipeline/depth/depth_format.h"
+#include "pipeline/shade/codec.h"
+#include "pipeline/shade/scalar_lane.h"
+#include "pipeline/shade/texture_view.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pipeline/emulate/transfer.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+
+#include "pipeline/shade/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::pipeline::HWY_NAMESPACE {
+
+void resolve_block(const GpuImage& from, GpuImage& to, int block) {
+  const auto* source = reinterpret_cast<const std::int32_t*>(from.block(block));
+  auto* target = reinterpret_cast<std::int32_t*>(to.block(block));
+  const float* srgb = srgb_decode_table().data();
+  const LaneF weight(1.0f / static_cast<float>(from.samples));
+  for (int first = 0; first < kBlockLanes; first += kVectorLanes) {
+    Vec4<LaneF> sum = {LaneF(0.0f), LaneF(0.0f), LaneF(0.0f), LaneF(0.0f)};
+    for (int s = 0; s < from.samples; ++s) {
+      LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
+      for (int w = 0; w < from.words; ++w) words[w] = load(source + (s * from.words + w) * kBlockLanes + first);
+      sum = sum + decode_texel<LaneF, LaneI>(from.format, words, srgb);
+    }
+    LaneI encoded[4];
+    encode_texel<LaneF, LaneI>(to.format, sum * weight, encoded);
+    for (int w = 0; w < to.words; ++w) store(encoded[w], target + w * kBlockLanes + first);
+  }
+}
+
+}  // namespace hwsim::pipeline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace hwsim::pipeline {
+HWY_EXPORT(resolve_block);
+
+namespace {
+
+void fill_words(GpuImage& image, const std::uint32_t (&words)[4], int jobs) {
+  parallel_for(static_cast<std::size_t>(image.blocks_y), jobs, [&](std::size_t row, int) {
+    for (int bx = 0; bx < image.blocks_x; ++bx) {
+      std::uint32_t* texels = image.block(static_cast<int>(row) * image.blocks_x + bx);
+      for (int plane = 0; plane < image.samples * image.words; ++plane)
+        std::fill_n(texels + plane * kBlockLanes, kBlockLanes, words[plane % image.words]);
+    }
+  });
+}
+
+}  // namespace
+
+void clear_image(GpuImage& image, const Pass& pass, int jobs) {
+  if (info(image.format).is_depth) {
+    const std::uint32_t bits = depth_bits(pass.clear_depth, depth_scale(image.format));
+    fill_words(image, {bits, 0, 0, 0}, jobs);
+    std::fill(image.depth_min.begin(), image.depth_min.end(), bits);
+    std::fill(image.depth_max.begin(), image.depth_max.end(), bits);
+    std::fill(image.stencil.begin(), image.stencil.end(), pass.clear_stencil);
+    return;
+  }
+  const glm::vec4& c = pass.clear_color;
+  ScalarI encoded[4] = {0, 0, 0, 0};
+  encode_texel<ScalarF, ScalarI>(image.format, {c.x, c.y, c.z, c.w}, encoded);
+  std::uint32_t words[4];
+  for (int w = 0; w < 4; ++w) words[w] = static_cast<std::uint32_t>(encoded[w].v);
+  fill_words(image, words, jobs);
+}
+
+void copy_image(const GpuImage& from, GpuImage& to) {
+  to.texels = from.texels;
+  to.stencil = from.stencil;
+  to.depth_min = from.depth_min;
+  to.depth_max = from.depth_max;
+}
+
+void resolve_image(const GpuImage& from, GpuImage& to, int jobs) {
+  const auto resolve = HWY_DYNAMIC_DISPATCH(resolve_block);
+  parallel_for(static_cast<std::size_t>(to.blocks_y), jobs, [&](std::size_t row, int) {
+    for (int bx = 0; bx < to.blocks_x; ++bx) resolve(from, to, static_cast<int>(row) * to.blocks_x + bx);
+  });
+}
+
+std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* source, std::span<GpuImage* const> targets) {
+  constexpr std::uint64_t kBands = 64;
+  std::vector<PassCounters> chunks(kBands);
+  const auto band = [&](std::uint64_t amount, std::uint64_t i) { return amount * (i + 1) / kBands - amount * i / kBands; };
+  for (std::uint64_t i = 0; i < kBands; ++i) {
+    PassCounters& n = chunks[i];
+    for (const GpuImage* target : targets) {
+      const auto tiles = static_cast<std::uint64_t>(target->blocks_x) * static_cast<std::uint64_t>(target->blocks_y);
+      const auto pixels = static_cast<std::uint64_t>(target->width) * static_cast<std::uint64_t>(target->height);
+      const std::uint64_t bytes = info(target->format).bytes;
+      const auto samples = static_cast<std::uint64_t>(target->samples);
+      if (pass.kind == PassKind::clear) {
+        n.fe.cleared_tiles += band(tiles, i) * samples;
+        continue;
+      }
+      const std::uint64_t read = pixels * static_cast<std::uint64_t>(source->samples);
+      n.mem.color_read_bytes += band(read * info(source->format).bytes, i);
+      n.mem.color_write_bytes += band(pixels * samples * bytes, i);
+      n.resolve.read_samples += band(read, i);
+      n.resolve.written_pixels += band(pixels, i);
+      n.crop.touched_tiles += band(tiles, i);
+      n.crop.first_touched_tiles += band(tiles, i);
+    }
+  }
+  if (!chunks.empty()) chunks[0].fe.draws += 1;
+  return chunks;
+}
+
+}  // namespace hwsim::pipeline
+#endif

@@ -1,0 +1,18 @@
+#pragma once
+// Clears, copies and resolves.
+#include <vector>
+
+#include "pipeline/emulate/gpu_image.h"
+#include "pipeline/graph/frame_graph.h"
+
+namespace hwsim::pipeline {
+
+void clear_image(GpuImage& image, const Pass& pass, int jobs);
+void copy_image(const GpuImage& from, GpuImage& to);
+/// The mean of all samples, taken in linear light; sums are in sample order.
+void resolve_image(const GpuImage& from, GpuImage& to, int jobs);
+
+/// Work of a transfer, in a chunk for each band of tiles.
+std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* source, std::span<GpuImage* const> targets);
+
+}  // namespace hwsim::pipeline

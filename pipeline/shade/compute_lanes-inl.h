@@ -1,0 +1,100 @@
+// What a compute shader sees: a wave of up to 64 invocations of a group, a vector register at a time.
+// Per-target include guard, see shade/lanes-inl.h.
+#include "pipeline/emulate/pass_context.h"
+#include "pipeline/shade/fragment_lanes-inl.h"
+
+#if defined(HWSIM_SHADE_COMPUTE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_SHADE_COMPUTE_LANES_INL_H_
+#undef HWSIM_SHADE_COMPUTE_LANES_INL_H_
+#else
+#define HWSIM_SHADE_COMPUTE_LANES_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::pipeline::HWY_NAMESPACE {
+
+class ComputeLanes {
+ public:
+  using F = LaneF;
+  using I = LaneI;
+  using M = LaneM;
+
+  /// Pixels and samples that the invocations of this register work on; `valid`: those that work at all.
+  ComputeLanes(GroupBatch& group, int first_lane, I x, I y, I sample, M valid)
+      : group_(group), first_(first_lane), x_(x), y_(y), sample_(sample), valid_(valid),
+        lanes_(static_cast<std::uint64_t>(__builtin_popcount(mask_bits(valid)))) {}
+
+  M valid() const { return valid_; }
+  I pixel_x() const { return x_; }
+  I pixel_y() const { return y_; }
+  I sample() const { return sample_; }
+
+  Vec4<F> load_image(int slot, I x, I y, I sample) {
+    const GpuImage& image = *group_.resources->images[static_cast<std::size_t>(slot)];
+    group_.counters->tex.texels += lanes_;
+    group_.counters->mem.texture_read_bytes += lanes_ * info(image.format).bytes;
+    return load_texel(image, x, y, sample);
+  }
+
+  /// Writes texel (x, y) of the pass's target, lanes of `mask` only; coordinates are inside the image.
+  void store_image(int target, I x, I y, I sample, const Vec4<F>& color, M mask) {
+    GpuImage& image = *group_.resources->targets[static_cast<std::size_t>(target)];
+    HWY_ALIGN std::int32_t words[4][kVectorLanes], px[kVectorLanes], py[kVectorLanes], ps[kVectorLanes];
+    I encoded[4] = {I(0), I(0), I(0), I(0)};
+    encode_texel<F, I>(image.format, color, encoded);
+    for (int w = 0; w < image.words; ++w) hn::Store(encoded[w].v, DI(), words[w]);
+    store(x, px);
+    store(y, py);
+    store(sample, ps);
+    const std::uint32_t bits = mask_bits(mask & valid_);
+    for (std::uint32_t rest = bits; rest != 0; rest &= rest - 1) {
+      const int lane = __builtin_ctz(rest);
+      for (int w = 0; w < image.words; ++w)
+        image.texels[image.word_index(px[lane], py[lane], ps[lane], w)] = static_cast<std::uint32_t>(words[w][lane]);
+    }
+    group_.counters->mem.storage_write_bytes +=
+        static_cast<std::uint64_t>(__builtin_popcount(bits)) * info(image.format).bytes;
+  }
+
+  template <class Body>
+  HWY_INLINE void branch(int block, M mask, Body&& body) {
+    const M live = mask & valid_;
+    if (!any(live)) return;
+    count_trip(group_.blocks, block, first_, live);
+    body();
+  }
+  template <class Body>
+  HWY_INLINE void uniform_branch(int block, bool condition, Body&& body) {
+    if (!condition) return;
+    count_trip(group_.blocks, block, first_, valid_);
+    body();
+  }
+  template <class Body>
+  HWY_INLINE void loop(int block, int count, M mask, Body&& body) {
+    const M live = mask & valid_;
+    if (!any(live)) return;
+    for (int i = 0; i < count; ++i) {
+      count_trip(group_.blocks, block, first_, live);
+      body(i);
+    }
+  }
+  std::size_t loop_count(int count) const { return static_cast<std::size_t>(count); }
+
+ private:
+  GroupBatch& group_;
+  int first_;
+  I x_, y_, sample_;
+  M valid_;
+  std::uint64_t lanes_;
+};
+
+/// Charges the blocks that a wave of `lanes` invocations went through, and starts the next wave.
+inline void end_wave(GroupBatch& group, int lanes) {
+  account_blocks(group.blocks, group.program->ops, group.program->block_count, lanes, *group.counters);
+  group.blocks.used = 0;
+}
+
+}  // namespace hwsim::pipeline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,98 @@
+#pragma once
+// From interpolated attributes and a material to a Surface: shared by forward shading and G-buffer passes.
+#include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/shade/lighting.h"
+#include "pipeline/shade/mesh_vertex.h"
+
+namespace hwsim::pipeline {
+
+enum MaterialBlock : int {
+  kBaseTextureBlock = 1,
+  kMetalRoughTextureBlock = 2,
+  kNormalTextureBlock = 3,
+  kEmissiveTextureBlock = 4,
+  kVertexColorBlock = 5
+};
+
+template <class F>
+struct MaterialSample {
+  Vec4<F> base;
+  F metallic, roughness;
+  Vec3<F> emissive;
+  Vec3<F> normal;  ///< unit length, toward the viewer on double-sided materials
+};
+
+/// The base color's alpha alone, at attribute scalars (uv, uv + 1): alpha-tested depth passes.
+template <class S>
+typename S::F sample_alpha(S& s, int uv) {
+  using F = typename S::F;
+  const MaterialView& m = s.material();
+  F alpha(m.base_color[3]);
+  s.uniform_branch(kBaseTextureBlock, m.base_color_texture != nullptr,
+                   [&] { alpha = alpha * s.sample_texture(m.base_color_texture, uv).w; });
+  return alpha;
+}
+
+template <class S>
+Vec3<typename S::F> shading_normal(S& s, bool full_varyings) {
+  using F = typename S::F;
+  using V = SurfaceVaryings;
+  const MaterialView& m = s.material();
+  Vec3<F> n = normalize(s.attr3(V::kNormal));
+  s.uniform_branch(kNormalTextureBlock, m.normal_texture != nullptr && full_varyings, [&] {
+    const Vec4<F> texel = s.sample_texture(m.normal_texture, V::kUv0);
+    const F scale(m.normal_scale);
+    const Vec3<F> t = s.attr3(V::kTangent);
+    const Vec3<F> tangent = normalize(t - n * dot(n, t));
+    const Vec3<F> bitangent = cross(n, tangent) * s.attr(V::kTangent + 3);
+    const F x = (texel.x * F(2.0f) - F(1.0f)) * scale, y = (texel.y * F(2.0f) - F(1.0f)) * scale;
+    const F z = texel.z * F(2.0f) - F(1.0f);
+    n = normalize(tangent * x + bitangent * y + n * z);
+  });
+  // A back face of a double-sided material shows its other side.
+  return n * s.facing();
+}
+
+template <class S>
+MaterialSample<typename S::F> sample_material(S& s, bool full_varyings) {
+  using F = typename S::F;
+  using V = SurfaceVaryings;
+  const MaterialView& m = s.material();
+  MaterialSample<F> out;
+  out.base = {F(m.base_color[0]), F(m.base_color[1]), F(m.base_color[2]), F(m.base_color[3])};
+  out.metallic = F(m.metallic);
+  out.roughness = F(m.roughness);
+  out.emissive = {F(m.emissive[0]), F(m.emissive[1]), F(m.emissive[2])};
+  s.uniform_branch(kBaseTextureBlock, m.base_color_texture != nullptr, [&] {
+    const Vec4<F> texel = s.sample_texture(m.base_color_texture, V::kUv0);
+    out.base = {out.base.x * texel.x, out.base.y * texel.y, out.base.z * texel.z, out.base.w * texel.w};
+  });
+  s.uniform_branch(kMetalRoughTextureBlock, m.metallic_roughness_texture != nullptr, [&] {
+    const Vec4<F> texel = s.sample_texture(m.metallic_roughness_texture, V::kUv0);
+    out.roughness = out.roughness * texel.y;
+    out.metallic = out.metallic * texel.z;
+  });
+  s.uniform_branch(kEmissiveTextureBlock, m.emissive_texture != nullptr, [&] {
+    const Vec4<F> texel = s.sample_texture(m.emissive_texture, V::kUv0);
+    out.emissive = out.emissive * Vec3<F>{texel.x, texel.y, texel.z};
+  });
+  s.uniform_branch(kVertexColorBlock, full_varyings && m.has_colors, [&] {
+    out.base = {out.base.x * s.attr(V::kColor), out.base.y * s.attr(V::kColor + 1), out.base.z * s.attr(V::kColor + 2),
+                out.base.w * s.attr(V::kColor + 3)};
+  });
+  out.normal = shading_normal(s, full_varyings);
+  return out;
+}
+
+template <class F>
+Surface<F> make_surface(const MaterialSample<F>& m, const Vec3<F>& position, const glm::vec3& eye) {
+  Surface<F> surface;
+  surface.position = position;
+  surface.normal = m.normal;
+  surface.to_eye = normalize(broadcast<F>(eye) - position);
+  set_material(Vec3<F>{m.base.x, m.base.y, m.base.z}, m.metallic, m.roughness, surface);
+  surface.emissive = m.emissive;
+  return surface;
+}
+
+}  // namespace hwsim::pipeline
