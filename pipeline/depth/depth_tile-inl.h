@@ -18,7 +18,7 @@ namespace hwsim::pipeline::HWY_NAMESPACE {
 
 /// Depth of a triangle at (x, y) pixels from its reference pixel's corner, as stored. The only place where depth is
 /// evaluated, so that EQUAL passes meet the bits of the pre-pass.
-HWY_INLINE LaneI depth_at(const Plane& z, LaneF x, LaneF y, float scale) {
+HWY_INLINE LaneI depth_at(const PlaneEquation& z, LaneF x, LaneF y, float scale) {
   const LaneF value = saturate((LaneF(z.base) + LaneF(z.ddy) * y) + LaneF(z.ddx) * x);
   if (scale == 0.0f) return float_to_bits(value + LaneF(0.0f));
   return LaneI(hn::NearestInt((value * LaneF(scale)).v));

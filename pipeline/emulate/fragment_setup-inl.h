@@ -16,7 +16,7 @@ namespace hwsim::pipeline::HWY_NAMESPACE {
 using D4 = hn::FixedTag<float, 4>;
 using D4I = hn::FixedTag<std::int32_t, 4>;
 
-HWY_INLINE hn::Vec<D4> plane_at(const Plane& p, hn::Vec<D4> x, hn::Vec<D4> y) {
+HWY_INLINE hn::Vec<D4> plane_at(const PlaneEquation& p, hn::Vec<D4> x, hn::Vec<D4> y) {
   const D4 d;
   return hn::Add(hn::Add(hn::Set(d, p.base), hn::Mul(hn::Set(d, p.ddy), y)), hn::Mul(hn::Set(d, p.ddx), x));
 }

@@ -68,7 +68,7 @@ struct Gradients {
   double l1_dx, l1_dy, l2_dx, l2_dy;  // of the barycentric coordinates, per px
 };
 
-Plane make_plane(const Gradients& g, double v0, double v1, double v2) {
+PlaneEquation make_plane(const Gradients& g, double v0, double v1, double v2) {
   const double dx = (v1 - v0) * g.l1_dx + (v2 - v0) * g.l2_dx;
   const double dy = (v1 - v0) * g.l1_dy + (v2 - v0) * g.l2_dy;
   return {static_cast<float>(v0 - dx * g.x0 - dy * g.y0), static_cast<float>(dx), static_cast<float>(dy)};

@@ -21,7 +21,7 @@ struct ScreenVertex {
 
 /// Value at pixel coordinates (x, y) relative to the triangle's reference pixel's top left corner:
 /// (base + ddy * y) + ddx * x, in single precision and in this order everywhere.
-struct Plane {
+struct PlaneEquation {
   float base = 0.0f, ddx = 0.0f, ddy = 0.0f;
 };
 
@@ -32,9 +32,9 @@ struct RasterTriangle {
   std::int64_t c[3];
   std::int16_t min_x, min_y, max_x, max_y;  ///< pixels whose samples can be inside, clipped to the viewport
   std::int32_t reference_x, reference_y;    ///< pixel
-  Plane z;
-  Plane inv_w;      ///< 1/w
-  Plane l1_w, l2_w; ///< barycentric coordinates of vertices 1 and 2, over w
+  PlaneEquation z;
+  PlaneEquation inv_w;      ///< 1/w
+  PlaneEquation l1_w, l2_w; ///< barycentric coordinates of vertices 1 and 2, over w
   std::uint32_t vertex[3];  ///< indices into the segment's varyings
   std::uint32_t draw;       ///< index into the pass's flat list of draws
   std::uint32_t chunk;      ///< index of the chunk of work
