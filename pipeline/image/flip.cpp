@@ -9,7 +9,6 @@ namespace hwsim::pipeline {
 namespace {
 
 // The values of the paper: exponent q_c, remapping p_c and p_t, feature width w, exponent q_f.
-// (q_f).
 constexpr float kColorExponent = 0.7f, kRemapKnee = 0.4f, kRemapTarget = 0.95f, kFeatureExponent = 0.5f;
 constexpr double kFeatureWidthDegrees = 0.082;
 // The white of the sRGB matrix below.
@@ -102,8 +101,7 @@ float color_distance(glm::vec3 p, glm::vec3 q) {
   return std::pow(std::abs(p.x - q.x) + chroma, kColorExponent);
 }
 
-// The largest distance in the sRGB gamut is green to blue; distances up to the knee get most of [0,1] (eq.
-// 5).
+// The largest distance in the sRGB gamut is green to blue; distances up to the knee get most of [0,1].
 float remapped(float distance) {
   static const float largest =
       color_distance(hunt_lab_from_linear({0.0f, 1.0f, 0.0f}), hunt_lab_from_linear({0.0f, 0.0f, 1.0f}));
@@ -112,8 +110,7 @@ float remapped(float distance) {
   return std::min(1.0f, kRemapTarget + (distance - knee) / (largest - knee) * (1.0f - kRemapTarget));
 }
 
-// Taps of the first or second derivative of a Gaussian: positive ones sum to 1, negative ones to -1
-//.
+// Taps of the first or second derivative of a Gaussian: positive ones sum to 1, negative ones to -1.
 std::vector<float> derivative_taps(int order, double sigma, int radius) {
   std::vector<double> taps;
   double positive = 0.0, negative = 0.0;
