@@ -27,22 +27,6 @@ const HwsimImageModule* open_module(const std::string& path, std::string& error)
   return nullptr;
 }
 
-const HwsimImageModule& find_module() {
-  Diagnostic d{.code = "I001", .message = std::string("cannot open the image module ") + kModuleFile};
-  for (const std::string& path : image_module_paths()) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) {
-      d.notes.push_back("not at " + path);
-      continue;
-    }
-    std::string error;
-    if (const HwsimImageModule* module = open_module(path, error)) return *module;
-    d.notes.push_back(error);
-  }
-  d.help = "set HWSIM_MODULE_DIR to the folder that holds it; libopenimageio2.4 must be installed";
-  throw InputError(d);
-}
-
 }  // namespace
 
 std::vector<std::string> image_module_paths() {
@@ -59,8 +43,25 @@ std::vector<std::string> image_module_paths() {
   return folders;
 }
 
+const HwsimImageModule& open_image_module(const std::vector<std::string>& paths) {
+  Diagnostic d{.code = "I001", .message = std::string("cannot open the image module ") + kModuleFile};
+  for (const std::string& path : paths) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) {
+      d.notes.push_back("not at " + path);
+      continue;
+    }
+    std::string error;
+    if (const HwsimImageModule* module = open_module(path, error)) return *module;
+    d.notes.push_back(error);
+  }
+  d.help = "set HWSIM_MODULE_DIR to the folder that holds it; libopenimageio2.4 must be installed";
+  throw InputError(d);
+}
+
 const HwsimImageModule& image_module() {
-  static const HwsimImageModule& module = find_module();  // a failed search is repeated at the next call
+  static const HwsimImageModule& module =
+      open_image_module(image_module_paths());  // a failed search is repeated at the next call
   return module;
 }
 

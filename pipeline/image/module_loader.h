@@ -10,7 +10,11 @@ namespace hwsim::pipeline {
 /// folder, the folder where the project is installed.
 std::vector<std::string> image_module_paths();
 
-/// Opens the module at the first call (0.26 s). Throws InputError (I001) that lists the paths tried.
+/// Opens the first of the paths that exists and is a module of this version. Throws InputError (I001) with
+/// what was wrong with each.
+const HwsimImageModule& open_image_module(const std::vector<std::string>& paths);
+
+/// Opens the module at the first call (0.26 s). Throws as above.
 const HwsimImageModule& image_module();
 
 }  // namespace hwsim::pipeline

@@ -183,5 +183,21 @@ TEST(ImageModule, IsLookedForInTheFolderThatTheUserNamesFirst) {
   EXPECT_NE(image_module_paths().front(), "/chosen/libhwsim_image_io.so");
 }
 
+TEST(ImageModule, SaysWhatWasWrongWithEachPlaceAndHowToGoOn) {
+  const std::string not_a_library = testing::scratch_folder("module") + "/libhwsim_image_io.so";
+  write_file_atomically(not_a_library, "X", Bytes{1, 2, 3});
+  try {
+    open_image_module({"/nonexistent/libhwsim_image_io.so", not_a_library});
+    FAIL();
+  } catch (const InputError& error) {
+    const Diagnostic& d = error.diagnostics().front();
+    EXPECT_EQ(d.code, "I001");
+    ASSERT_EQ(d.notes.size(), 2u);
+    EXPECT_NE(d.notes[0].find("not at /nonexistent"), std::string::npos);
+    EXPECT_NE(d.notes[1].find(not_a_library), std::string::npos);
+    EXPECT_NE(d.help.find("HWSIM_MODULE_DIR"), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace hwsim::pipeline
