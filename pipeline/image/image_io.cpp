@@ -1,0 +1,147 @@
+#include "pipeline/image/image_io.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <new>
+#include <string_view>
+
+#include "hwsim/base/diagnostics.h"
+#include "pipeline/base/file_io.h"
+#include "pipeline/image/image_signature.h"
+#include "pipeline/image/module_loader.h"
+
+namespace hwsim::pipeline {
+namespace {
+
+constexpr std::size_t kMaxFileBytes = std::size_t{2} << 30;
+constexpr float kLargestHalf = 65504.0f;
+
+[[noreturn]] void fail(const std::string& code, const std::string& message, const std::string& file,
+                       const std::string& help) {
+  Diagnostic d{.code = code, .message = message};
+  d.place.file = file;
+  d.help = help;
+  throw InputError(d);
+}
+
+// Exceptions must not pass through the module's frames: a failed allocation is answered with null.
+template <class Target>
+void* allocate_in(void* user, int width, int height) {
+  try {
+    return static_cast<Target*>(user)->allocate(width, height);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
+
+struct RawTarget {
+  RawImage image;
+  void* allocate(int width, int height) {
+    image = {width, height, {}};
+    image.texels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    return image.texels.data();
+  }
+};
+
+struct FloatTarget {
+  Image image;
+  void* allocate(int width, int height) {
+    image = Image(width, height);
+    return image.pixels.data();
+  }
+};
+
+[[noreturn]] void report(int status, const std::string& reason, const std::string& what) {
+  const std::string tail = reason.empty() ? std::string() : ": " + reason;
+  if (status == kHwsimImageTooLarge)
+    fail("I003", "the image is too large" + tail, what,
+         "reduce it to at most " + std::to_string(kHwsimImageMaxExtentPx) + " pixels a side");
+  if (status == kHwsimImageDamaged)
+    fail("I002", "the image is damaged" + tail, what, "export it again, as PNG or JPEG");
+  fail("I004", "the image cannot be read" + tail, what, "convert it to an 8-bit PNG");
+}
+
+void check_format(std::span<const std::uint8_t> bytes, const std::string& what, bool exr_allowed) {
+  const ImageFormat format = image_format(bytes);
+  if (format == ImageFormat::unknown || (format == ImageFormat::exr && !exr_allowed))
+    fail("I006", bytes.empty() ? "the image is empty" : "unknown image format", what,
+         exr_allowed ? "PNG, JPEG and OpenEXR are read" : "PNG and JPEG are read");
+  if (format == ImageFormat::png && !png_is_intact(bytes))
+    report(kHwsimImageDamaged, "bytes are missing or changed", what);
+  if (format == ImageFormat::jpeg && !jpeg_is_complete(bytes))
+    report(kHwsimImageDamaged, "its end is missing", what);
+}
+
+template <class Target>
+Target decode(std::span<const std::uint8_t> bytes, const std::string& what, bool as_float) {
+  Target target;
+  std::array<char, 512> error{};
+  const HwsimImageOutput output{&target, &allocate_in<Target>, nullptr, error.data(), error.size()};
+  const int status = image_module().decode(bytes.data(), bytes.size(), as_float ? 1 : 0, &output);
+  if (status != kHwsimImageOk) report(status, error.data(), what);
+  return target;
+}
+
+void append_bytes(void* user, const void* bytes, std::size_t count) {
+  const auto* first = static_cast<const std::uint8_t*>(bytes);
+  static_cast<std::vector<std::uint8_t>*>(user)->assign(first, first + count);
+}
+
+std::vector<std::uint8_t> encode(const char* format, const void* rgb, const Image& image,
+                                 const std::string& path) {
+  std::vector<std::uint8_t> file;
+  std::array<char, 512> error{};
+  const HwsimImageOutput output{&file, nullptr, &append_bytes, error.data(), error.size()};
+  if (image_module().encode(format, rgb, image.width, image.height, &output) != kHwsimImageOk)
+    fail("I005", std::string("cannot encode the image: ") + error.data(), path,
+         "write it in the other format, .png or .exr");
+  return file;
+}
+
+std::vector<std::uint8_t> encode_png(const Image& image, const std::string& path) {
+  std::vector<std::uint8_t> rgb;
+  rgb.reserve(image.pixels.size() * 3);
+  for (const glm::vec4& pixel : image.pixels)
+    for (int c = 0; c < 3; ++c)
+      rgb.push_back(static_cast<std::uint8_t>(std::min(srgb_from_linear(pixel[c]), 1.0f) * 255.0f + 0.5f));
+  return encode("png", rgb.data(), image, path);
+}
+
+// Finite values beyond the half format saturate: a bright pixel must not turn into an infinite one.
+std::vector<std::uint8_t> encode_exr(const Image& image, const std::string& path) {
+  std::vector<float> rgb;
+  rgb.reserve(image.pixels.size() * 3);
+  for (const glm::vec4& pixel : image.pixels)
+    for (int c = 0; c < 3; ++c)
+      rgb.push_back(std::isfinite(pixel[c]) ? std::clamp(pixel[c], -kLargestHalf, kLargestHalf) : pixel[c]);
+  return encode("exr", rgb.data(), image, path);
+}
+
+}  // namespace
+
+RawImage decode_image(std::span<const std::uint8_t> bytes, const std::string& what) {
+  check_format(bytes, what, false);
+  return decode<RawTarget>(bytes, what, false).image;
+}
+
+Image read_image(const std::string& path) {
+  const std::vector<std::uint8_t> bytes = read_file(path, "I004", kMaxFileBytes);
+  check_format(bytes, path, true);
+  Image image = decode<FloatTarget>(bytes, path, true).image;
+  if (image_format(bytes) == ImageFormat::exr) return image;
+  for (glm::vec4& pixel : image.pixels)
+    for (int c = 0; c < 3; ++c) pixel[c] = linear_from_srgb(pixel[c]);
+  return image;
+}
+
+void write_image(const Image& image, const std::string& path) {
+  const std::string_view name(path);
+  const bool png = name.ends_with(".png"), exr = name.ends_with(".exr");
+  if (!png && !exr) fail("I006", "unknown image format", path, "name the file .png or .exr");
+  if (image.width <= 0 || image.height <= 0)
+    fail("I005", "the image is empty", path, "write at least one pixel");
+  write_file_atomically(path, "I005", png ? encode_png(image, path) : encode_exr(image, path));
+}
+
+}  // namespace hwsim::pipeline

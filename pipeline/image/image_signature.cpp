@@ -1,0 +1,92 @@
+#include "pipeline/image/image_signature.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace hwsim::pipeline {
+namespace {
+
+template <std::size_t N>
+bool starts_with(std::span<const std::uint8_t> bytes, const std::array<std::uint8_t, N>& magic) {
+  return bytes.size() >= N && std::equal(magic.begin(), magic.end(), bytes.begin());
+}
+
+constexpr std::uint8_t kStartOfScan = 0xDA, kEndOfImage = 0xD9;
+
+bool has_no_payload(std::uint8_t marker) { return marker == 0x01 || (marker >= 0xD0 && marker <= 0xD8); }
+
+std::uint32_t big_endian_32(std::span<const std::uint8_t> bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value = value << 8 | bytes[at + i];
+  return value;
+}
+
+// ISO 3309, as PNG's annex D gives it: reflected, polynomial 0xEDB88320.
+constexpr std::array<std::uint32_t, 256> crc_table() {
+  std::array<std::uint32_t, 256> table{};
+  for (std::uint32_t n = 0; n < 256; ++n) {
+    std::uint32_t c = n;
+    for (int bit = 0; bit < 8; ++bit) c = (c >> 1) ^ ((c & 1u) ? 0xEDB88320u : 0u);
+    table[n] = c;
+  }
+  return table;
+}
+
+std::uint32_t crc32(std::span<const std::uint8_t> bytes) {
+  static constexpr std::array<std::uint32_t, 256> table = crc_table();
+  std::uint32_t crc = 0xFFFFFFFFu;
+  for (const std::uint8_t byte : bytes) crc = table[(crc ^ byte) & 0xFFu] ^ (crc >> 8);
+  return ~crc;
+}
+
+}  // namespace
+
+ImageFormat image_format(std::span<const std::uint8_t> bytes) {
+  if (starts_with<8>(bytes, {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'})) return ImageFormat::png;
+  if (starts_with<3>(bytes, {0xFF, 0xD8, 0xFF})) return ImageFormat::jpeg;
+  if (starts_with<4>(bytes, {0x76, 0x2F, 0x31, 0x01})) return ImageFormat::exr;
+  return ImageFormat::unknown;
+}
+
+bool png_is_intact(std::span<const std::uint8_t> bytes) {
+  constexpr std::size_t kFraming = 12;  // length, type, checksum
+  std::size_t at = 8;
+  while (at <= bytes.size() && bytes.size() - at >= kFraming) {
+    const std::size_t length = big_endian_32(bytes, at);
+    if (length > bytes.size() - at - kFraming) return false;
+    const auto type_and_data = bytes.subspan(at + 4, 4 + length);
+    const bool critical = (type_and_data[0] & 0x20) == 0;
+    if (critical && crc32(type_and_data) != big_endian_32(bytes, at + 8 + length)) return false;
+    constexpr std::array<std::uint8_t, 4> end = {'I', 'E', 'N', 'D'};
+    if (starts_with(type_and_data, end)) return true;
+    at += kFraming + length;
+  }
+  return false;
+}
+
+bool jpeg_is_complete(std::span<const std::uint8_t> bytes) {
+  std::size_t at = 2;
+  bool in_scan = false;
+  while (at + 1 < bytes.size()) {
+    if (bytes[at] != 0xFF) {
+      if (!in_scan) return false;
+      ++at;
+      continue;
+    }
+    const std::uint8_t marker = bytes[at + 1];
+    if (marker == kEndOfImage) return true;
+    if (marker == 0xFF) {  // a fill byte
+      ++at;
+    } else if (has_no_payload(marker) || (in_scan && marker == 0x00)) {  // FF 00 is a stuffed FF of the scan
+      at += 2;
+    } else {
+      if (at + 3 >= bytes.size()) return false;
+      at += 2 + (std::size_t{bytes[at + 2]} << 8 | bytes[at + 3]);
+      in_scan = marker == kStartOfScan;
+    }
+  }
+  return false;
+}
+
+}  // namespace hwsim::pipeline

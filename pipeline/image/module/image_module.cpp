@@ -1,0 +1,124 @@
+#include "pipeline/image/module/image_module.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+namespace {
+
+int fail(const HwsimImageOutput& output, int status, const std::string& message) {
+  const std::size_t last = message.find_last_not_of(" \n\r\t");
+  std::snprintf(output.error, output.error_bytes, "%s", message.substr(0, last + 1).c_str());
+  return status;
+}
+
+// The formats are asked for by name: OIIO would try a hundred plug-ins on bytes that none of them knows.
+const char* format_of(const std::uint8_t* bytes, std::size_t count) {
+  if (count >= 4 && bytes[0] == 0x89 && bytes[1] == 'P') return "png";
+  if (count >= 4 && bytes[0] == 0xFF && bytes[1] == 0xD8) return "jpeg";
+  return "openexr";
+}
+
+// Deflate expands at most 1032 times, so a small PNG that claims more is damaged: found before 1 GiB is
+// allocated.
+bool png_could_hold(const OIIO::ImageSpec& spec, std::size_t byte_count) {
+  const int bits = spec.get_int_attribute("oiio:BitsPerSample", 8);
+  const double stored_bits = static_cast<double>(spec.image_pixels()) * std::min(bits, 8);
+  return stored_bits / 8.0 <= 1032.0 * static_cast<double>(byte_count);
+}
+
+template <class T>
+bool read_rgba(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, T one, T* rgba) {
+  const int read_channels = std::min(spec.nchannels, 4);
+  if (!input.read_image(0, 0, 0, read_channels, type, rgba, 4 * static_cast<OIIO::stride_t>(sizeof(T))))
+    return false;
+  const bool has_alpha = spec.alpha_channel >= 0 && spec.alpha_channel < read_channels;
+  const bool gray = read_channels < 3;
+  const auto count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
+  for (std::size_t i = 0; i < count; ++i) {
+    T* texel = rgba + 4 * i;
+    const T alpha = has_alpha ? texel[spec.alpha_channel] : one;
+    if (gray) texel[1] = texel[2] = texel[0];
+    texel[3] = alpha;
+  }
+  return true;
+}
+
+int decode(const std::uint8_t* bytes, std::size_t byte_count, int as_float, const HwsimImageOutput& output) {
+  const std::string format = format_of(bytes, byte_count);
+  OIIO::Filesystem::IOMemReader reader(bytes, byte_count);
+  const auto input = OIIO::ImageInput::create(format);
+  if (!input) return fail(output, kHwsimImageFailed, "OpenImageIO lacks its plug-in for " + format);
+  OIIO::ImageSpec config, spec;
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  if (!input->set_ioproxy(&reader))
+    return fail(output, kHwsimImageFailed, format + " cannot be read from memory");
+  if (!input->open("image", spec, config)) return fail(output, kHwsimImageDamaged, input->geterror());
+  if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1)
+    return fail(output, kHwsimImageDamaged, "its size is zero");
+  if (spec.width > kHwsimImageMaxExtentPx || spec.height > kHwsimImageMaxExtentPx)
+    return fail(output, kHwsimImageTooLarge,
+                "it is " + std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels");
+  if (format == "png" && !png_could_hold(spec, byte_count))
+    return fail(output, kHwsimImageDamaged, "it is too short for the size that it claims");
+  void* pixels = output.allocate(output.user, spec.width, spec.height);
+  if (!pixels) return fail(output, kHwsimImageFailed, "not enough memory");
+  const bool done = as_float
+                        ? read_rgba(*input, spec, OIIO::TypeDesc::FLOAT, 1.0f, static_cast<float*>(pixels))
+                        : read_rgba(*input, spec, OIIO::TypeDesc::UINT8, std::uint8_t{255},
+                                    static_cast<std::uint8_t*>(pixels));
+  return done ? kHwsimImageOk : fail(output, kHwsimImageDamaged, input->geterror());
+}
+
+int encode(const std::string& format, const void* rgb, int width, int height,
+           const HwsimImageOutput& output) {
+  const bool png = format == "png";
+  std::vector<unsigned char> file;
+  {
+    OIIO::Filesystem::IOVecOutput writer(file);
+    const auto image = OIIO::ImageOutput::create(png ? "png" : "openexr");
+    if (!image) return fail(output, kHwsimImageFailed, "OpenImageIO lacks its plug-in for " + format);
+    OIIO::ImageSpec spec(width, height, 3, png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::HALF);
+    spec.attribute("oiio:ColorSpace", png ? "sRGB" : "Linear");
+    spec.attribute("compression", "zip");
+    const bool written = image->set_ioproxy(&writer) && image->open(png ? "image.png" : "image.exr", spec) &&
+                         image->write_image(png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT, rgb) &&
+                         image->close();
+    if (!written) return fail(output, kHwsimImageFailed, image->geterror());
+  }
+  output.append(output.user, file.data(), file.size());
+  return kHwsimImageOk;
+}
+
+int decode_guarded(const std::uint8_t* bytes, std::size_t byte_count, int as_float,
+                   const HwsimImageOutput* output) {
+  try {
+    return decode(bytes, byte_count, as_float, *output);
+  } catch (const std::exception& error) {
+    return fail(*output, kHwsimImageDamaged, error.what());
+  } catch (...) {
+    return fail(*output, kHwsimImageDamaged, "unknown error");
+  }
+}
+
+int encode_guarded(const char* format, const void* rgb, int width, int height,
+                   const HwsimImageOutput* output) {
+  try {
+    return encode(format, rgb, width, height, *output);
+  } catch (const std::exception& error) {
+    return fail(*output, kHwsimImageFailed, error.what());
+  } catch (...) {
+    return fail(*output, kHwsimImageFailed, "unknown error");
+  }
+}
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) const HwsimImageModule hwsim_image_module;
+extern "C" const HwsimImageModule hwsim_image_module = {kHwsimImageAbiVersion, decode_guarded,
+                                                        encode_guarded};

@@ -1,0 +1,44 @@
+#pragma once
+// The C interface between the project and the image module. No type of the C++ library and no exception
+// crosses it, so that the module may be built by another compiler, and only bytes do: the module never opens
+// a file.
+#include <cstddef>
+#include <cstdint>
+
+extern "C" {
+
+enum { kHwsimImageAbiVersion = 1, kHwsimImageMaxExtentPx = 16384 };
+
+enum HwsimImageStatus {
+  kHwsimImageOk = 0,
+  kHwsimImageDamaged = 1,
+  kHwsimImageTooLarge = 2,
+  kHwsimImageFailed = 3
+};
+
+/// Receives what a call produced. `allocate` is called at most once, and not when the call fails before its
+/// output's size is known; a null result makes the call fail.
+struct HwsimImageOutput {
+  void* user;
+  void* (*allocate)(void* user, int width, int height);  ///< 4 elements a pixel: bytes or floats
+  void (*append)(void* user, const void* bytes, std::size_t byte_count);
+  char* error;  ///< a message, always terminated
+  std::size_t error_bytes;
+};
+
+/// RGBA, alpha not multiplied in, values as stored (no transfer function). `as_float`: floats instead of
+/// bytes.
+using HwsimImageDecode = int (*)(const std::uint8_t* bytes, std::size_t byte_count, int as_float,
+                                 const HwsimImageOutput* output);
+/// `format` "png": `rgb` holds bytes; "exr": floats, stored as halves. The file's bytes go to `append`.
+using HwsimImageEncode = int (*)(const char* format, const void* rgb, int width, int height,
+                                 const HwsimImageOutput* output);
+
+/// What the module exports, under the name "hwsim_image_module".
+struct HwsimImageModule {
+  int abi_version;
+  HwsimImageDecode decode;
+  HwsimImageEncode encode;
+};
+
+}  // extern "C"
