@@ -14,7 +14,7 @@ struct ImageError {
 /// Throws std::invalid_argument when sizes differ. `flip_map` (optional) receives the per-pixel FLIP error in r.
 ImageError compare(const Image& test, const Image& reference, Image* flip_map = nullptr);
 
-/// The magma color map on values in [0,1], for error and heat maps.
+/// The magma color map on values in [0,1], for error and heat maps. Linear, so that write_image shows the map's colors.
 glm::vec3 magma(float value);
 
 }  // namespace hwsim::pipeline

@@ -1,0 +1,14 @@
+#pragma once
+#include "pipeline/image/image.h"
+#include "pipeline/image/plane.h"
+
+namespace hwsim::pipeline {
+
+/// A viewer 0.7 m from a monitor 0.7 m and 3840 pixels wide, the setting of the FLIP paper (section 5).
+inline constexpr double kFlipPixelsPerDegree = 67.0206432766;
+
+/// LDR FLIP (Andersson et al. 2020), the error of each pixel in [0,1]. Linear images of the same size with
+/// values in [0,1].
+Plane flip_error(const Image& test, const Image& reference);
+
+}  // namespace hwsim::pipeline
