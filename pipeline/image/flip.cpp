@@ -8,7 +8,7 @@
 namespace hwsim::pipeline {
 namespace {
 
-// Names and values of the paper: section 4.1.2 (exponent q_c, remapping p_c, p_t), 4.2 (filter width w), 4.3
+// The values of the paper: exponent q_c, remapping p_c and p_t, feature width w, exponent q_f.
 // (q_f).
 constexpr float kColorExponent = 0.7f, kRemapKnee = 0.4f, kRemapTarget = 0.95f, kFeatureExponent = 0.5f;
 constexpr double kFeatureWidthDegrees = 0.082;
@@ -29,7 +29,7 @@ glm::vec3 linear_from_xyz(glm::vec3 c) {
 
 using Planes = std::array<Plane, 3>;
 
-// Y, Cx, Cz: linear in XYZ, so that filtering commutes with it (eq. 2).
+// Y, Cx, Cz: linear in XYZ, so that filtering commutes with it.
 Planes opponent_planes(const Image& image) {
   Planes planes = {Plane(image.width, image.height), Plane(image.width, image.height),
                    Plane(image.width, image.height)};
@@ -47,7 +47,7 @@ glm::vec3 linear_from_opponent(float luma, float cx, float cz) {
   return glm::clamp(linear_from_xyz(glm::vec3(y + cx / 500.0f, y, y - cz / 200.0f) * kWhite), 0.0f, 1.0f);
 }
 
-// A term a sqrt(pi/b) exp(-pi^2 x^2 / b) of a contrast sensitivity function, x in degrees (table 1).
+// A term a sqrt(pi/b) exp(-pi^2 x^2 / b) of a contrast sensitivity function, x in degrees.
 struct SensitivityTerm {
   double a, b;
 };
@@ -88,7 +88,7 @@ float lab_curve(float t) {
   return t > delta * delta * delta ? std::cbrt(t) : t / (3.0f * delta * delta) + 4.0f / 29.0f;
 }
 
-// CIELab with chroma scaled by lightness, for the Hunt effect (eq. 3).
+// CIELab with chroma scaled by lightness, for the Hunt effect.
 glm::vec3 hunt_lab_from_linear(glm::vec3 linear) {
   const glm::vec3 t = xyz_from_linear(linear) / kWhite;
   const float x = lab_curve(t.x), y = lab_curve(t.y), z = lab_curve(t.z);
@@ -96,7 +96,7 @@ glm::vec3 hunt_lab_from_linear(glm::vec3 linear) {
   return {lightness, 0.01f * lightness * 500.0f * (x - y), 0.01f * lightness * 200.0f * (y - z)};
 }
 
-// HyAB distance (eq. 4) to the power q_c.
+// HyAB distance to the power q_c.
 float color_distance(glm::vec3 p, glm::vec3 q) {
   const float chroma = std::sqrt((p.y - q.y) * (p.y - q.y) + (p.z - q.z) * (p.z - q.z));
   return std::pow(std::abs(p.x - q.x) + chroma, kColorExponent);
@@ -113,7 +113,7 @@ float remapped(float distance) {
 }
 
 // Taps of the first or second derivative of a Gaussian: positive ones sum to 1, negative ones to -1
-// (section 4.2).
+//.
 std::vector<float> derivative_taps(int order, double sigma, int radius) {
   std::vector<double> taps;
   double positive = 0.0, negative = 0.0;
@@ -173,7 +173,7 @@ Plane flip_error(const Image& test, const Image& reference) {
     const glm::vec3 p = linear_from_opponent(t[0].values[i], t[1].values[i], t[2].values[i]);
     const glm::vec3 q = linear_from_opponent(r[0].values[i], r[1].values[i], r[2].values[i]);
     const float color = remapped(color_distance(hunt_lab_from_linear(p), hunt_lab_from_linear(q)));
-    error.values[i] = std::pow(color, 1.0f - error.values[i]);  // eq. 8
+    error.values[i] = std::pow(color, 1.0f - error.values[i]);
   }
   return error;
 }

@@ -4,7 +4,7 @@
 
 namespace hwsim::pipeline {
 
-/// A viewer 0.7 m from a monitor 0.7 m and 3840 pixels wide, the setting of the FLIP paper (section 5).
+/// A viewer 0.7 m from a monitor 0.7 m and 3840 pixels wide, the setting of the FLIP paper.
 inline constexpr double kFlipPixelsPerDegree = 67.0206432766;
 
 /// LDR FLIP (Andersson et al. 2020), the error of each pixel in [0,1]. Linear images of the same size with
