@@ -33,7 +33,8 @@ std::vector<bool> materials_in_use(const tinygltf::Model& model, const std::vect
   std::vector<bool> used(model.materials.size(), false);
   for (std::size_t m = 0; m < model.meshes.size(); ++m)
     for (const tinygltf::Primitive& primitive : model.meshes[m].primitives)
-      if (used_meshes[m] && primitive.material >= 0) used[static_cast<std::size_t>(primitive.material)] = true;
+      if (used_meshes[m] && primitive.material >= 0)
+        used[static_cast<std::size_t>(primitive.material)] = true;
   return used;
 }
 
@@ -51,18 +52,22 @@ void check_budget(const Report& report, const tinygltf::Model& model, const std:
         vertices += model.accessors[static_cast<std::size_t>(p->second)].count;
   }
   for (const PlacedNode& placed : nodes)
-    if (const int mesh = node_at(model, placed).mesh; mesh >= 0) drawn += triangles[static_cast<std::size_t>(mesh)];
+    if (const int mesh = node_at(model, placed).mesh; mesh >= 0)
+      drawn += triangles[static_cast<std::size_t>(mesh)];
   const std::string limit = std::to_string(max_triangles);
   if (std::max(stored, drawn) > max_triangles)
-    report.fail("S012", "the scene draws " + std::to_string(std::max(stored, drawn)) + " triangles, the limit is " + limit,
-                "draw fewer instances, or reduce the meshes");
+    report.fail(
+        "S012",
+        "the scene draws " + std::to_string(std::max(stored, drawn)) + " triangles, the limit is " + limit,
+        "draw fewer instances, or reduce the meshes");
   // Three vertices a triangle are the most that any one triangle needs.
   if (vertices > std::max<std::uint64_t>(3 * max_triangles, 3 * max_triangles / 3))
-    report.fail("S012", "the scene's primitives refer to " + std::to_string(vertices) + " vertices, the limit is 3 x " + limit);
+    report.fail("S012", "the scene's primitives refer to " + std::to_string(vertices) +
+                            " vertices, the limit is 3 x " + limit);
 }
 
-void add_meshes(Scene& scene, Report& report, const tinygltf::Model& model, const std::vector<PlacedNode>& nodes,
-                const std::vector<bool>& used) {
+void add_meshes(Scene& scene, Report& report, const tinygltf::Model& model,
+                const std::vector<PlacedNode>& nodes, const std::vector<bool>& used) {
   std::vector<int> place(model.meshes.size(), -1);
   const int default_material = static_cast<int>(model.materials.size());
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {
@@ -79,7 +84,8 @@ void add_meshes(Scene& scene, Report& report, const tinygltf::Model& model, cons
     const tinygltf::Node& node = node_at(model, placed);
     if (node.mesh < 0 || place[static_cast<std::size_t>(node.mesh)] < 0) continue;
     const std::string where = gltf::element("nodes", static_cast<std::size_t>(placed.node));
-    if (node.skin >= 0) report.note("S110", "skins are ignored: meshes are drawn as modeled, placed by their node", where);
+    if (node.skin >= 0)
+      report.note("S110", "skins are ignored: meshes are drawn as modeled, placed by their node", where);
     scene.instances.push_back({place[static_cast<std::size_t>(node.mesh)], glm::mat4(placed.world_from_local),
                                node.name.empty() ? where : node.name});
   }

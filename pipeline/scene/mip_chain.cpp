@@ -17,8 +17,10 @@ struct SrgbTables {
 
   SrgbTables() {
     for (std::size_t i = 0; i < 256; ++i)
-      linear_of_code[i] = static_cast<std::uint16_t>(std::lround(65535.0f * linear_from_srgb(static_cast<float>(i) / 255.0f)));
-    // Half way between the neighbors' light is where the nearest code changes, up to the curve inside one step.
+      linear_of_code[i] = static_cast<std::uint16_t>(
+          std::lround(65535.0f * linear_from_srgb(static_cast<float>(i) / 255.0f)));
+    // Half way between the neighbors' light is where the nearest code changes, up to the curve inside one
+    // step.
     std::size_t code = 0;
     for (std::size_t linear = 0; linear < code_of_linear.size(); ++linear) {
       while (code < 255 && 2 * linear > std::size_t{linear_of_code[code]} + linear_of_code[code + 1]) ++code;
@@ -46,7 +48,8 @@ class Reducer {
     const bool even = from.width % 2 == 0 && from.height % 2 == 0;
     for (int y = 0; y < to.height; ++y)
       for (int x = 0; x < to.width; ++x)
-        to.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(to.width) + static_cast<std::size_t>(x)] =
+        to.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(to.width) +
+                  static_cast<std::size_t>(x)] =
             even ? mean_of_four(from, x, y) : mean_of_area(from, to, x, y);
     return to;
   }
@@ -59,7 +62,8 @@ class Reducer {
 
   std::uint32_t mean_of_four(const MipLevel& from, int x, int y) const {
     const std::size_t width = static_cast<std::size_t>(from.width);
-    const std::uint32_t* row = &from.texels[2 * static_cast<std::size_t>(y) * width + 2 * static_cast<std::size_t>(x)];
+    const std::uint32_t* row =
+        &from.texels[2 * static_cast<std::size_t>(y) * width + 2 * static_cast<std::size_t>(x)];
     const std::array<std::uint32_t, 4> texel = {row[0], row[1], row[width], row[width + 1]};
     std::uint32_t r = 2, g = 2, b = 2, a = 2;  // rounds to nearest after the shift
     for (const std::uint32_t t : texel) {

@@ -27,7 +27,8 @@ void add_instance(SceneStats& out, const Scene& scene, const Mesh& mesh) {
 
 glm::mat4 clip_from_view(const Camera& camera, float aspect_ratio) {
   const float near = camera.near_m, far = camera.far_m;
-  const float half_height = camera.orthographic ? camera.ortho_half_height_m : std::tan(camera.fov_y_rad * 0.5f);
+  const float half_height =
+      camera.orthographic ? camera.ortho_half_height_m : std::tan(camera.fov_y_rad * 0.5f);
   glm::mat4 m(0.0f);
   m[0][0] = 1.0f / (half_height * aspect_ratio);
   m[1][1] = 1.0f / half_height;
@@ -50,15 +51,16 @@ SceneStats stats(const Scene& scene) {
     out.vertices += mesh.positions.size();
   }
   for (const Texture& texture : scene.textures)
-    for (const MipLevel& level : texture.levels) out.texture_bytes += level.texels.size() * sizeof(std::uint32_t);
+    for (const MipLevel& level : texture.levels)
+      out.texture_bytes += level.texels.size() * sizeof(std::uint32_t);
   bool first = true;
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
     add_instance(out, scene, mesh);
     if (mesh.parts.empty()) continue;
     for (int i = 0; i < 8; ++i) {
-      const glm::vec3 corner =
-          glm::vec3(instance.world_from_local * glm::vec4(box_corner(mesh.bounds_min, mesh.bounds_max, i), 1.0f));
+      const glm::vec3 corner = glm::vec3(instance.world_from_local *
+                                         glm::vec4(box_corner(mesh.bounds_min, mesh.bounds_max, i), 1.0f));
       out.bounds_min = first ? corner : glm::min(out.bounds_min, corner);
       out.bounds_max = first ? corner : glm::max(out.bounds_max, corner);
       first = false;

@@ -16,7 +16,8 @@ struct Elements {
   std::size_t stride = 0;
 };
 
-Elements elements_at(const tinygltf::Model& model, int view_index, std::size_t offset, std::size_t element_bytes) {
+Elements elements_at(const tinygltf::Model& model, int view_index, std::size_t offset,
+                     std::size_t element_bytes) {
   if (view_index < 0) return {};
   const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(view_index)];
   const auto& data = model.buffers[static_cast<std::size_t>(view.buffer)].data;
@@ -39,12 +40,18 @@ float to_float(C value, bool normalized) {
 template <class Visit>
 void with_component_type(int component_type, Visit visit) {
   switch (component_type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: return visit(std::int8_t{});
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return visit(std::uint8_t{});
-    case TINYGLTF_COMPONENT_TYPE_SHORT: return visit(std::int16_t{});
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return visit(std::uint16_t{});
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return visit(std::uint32_t{});
-    default: return visit(float{});
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return visit(std::int8_t{});
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return visit(std::uint8_t{});
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return visit(std::int16_t{});
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return visit(std::uint16_t{});
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      return visit(std::uint32_t{});
+    default:
+      return visit(float{});
   }
 }
 
@@ -60,35 +67,41 @@ void copy_element(const std::uint8_t* from, std::size_t components, Store store)
 std::vector<std::uint32_t> sparse_places(const Report& report, const tinygltf::Model& model,
                                          const tinygltf::Accessor& accessor, const std::string& where) {
   const auto& sparse = accessor.sparse;
-  const auto bytes = static_cast<std::size_t>(component_bytes(static_cast<std::uint64_t>(sparse.indices.componentType)));
-  const Elements from =
-      elements_at(model, sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset), bytes);
+  const auto bytes =
+      static_cast<std::size_t>(component_bytes(static_cast<std::uint64_t>(sparse.indices.componentType)));
+  const Elements from = elements_at(model, sparse.indices.bufferView,
+                                    static_cast<std::size_t>(sparse.indices.byteOffset), bytes);
   std::vector<std::uint32_t> places(static_cast<std::size_t>(sparse.count));
   with_component_type(sparse.indices.componentType, [&]<class C>(C) {
     for (std::size_t i = 0; i < places.size(); ++i)
-      copy_element<C>(from.first + i * bytes, 1, [&](std::size_t, C v) { places[i] = static_cast<std::uint32_t>(v); });
+      copy_element<C>(from.first + i * bytes, 1,
+                      [&](std::size_t, C v) { places[i] = static_cast<std::uint32_t>(v); });
   });
   for (const std::uint32_t place : places)
     if (place >= accessor.count)
-      report.fail("S009", where + ": sparse index " + std::to_string(place) + " is not below the accessor's count " +
-                              std::to_string(accessor.count));
+      report.fail("S009", where + ": sparse index " + std::to_string(place) +
+                              " is not below the accessor's count " + std::to_string(accessor.count));
   return places;
 }
 
 // Every element, sparse ones replaced: store(element, component, value).
 template <class Store>
-void for_each_component(const Report& report, const tinygltf::Model& model, const tinygltf::Accessor& accessor,
-                        const std::string& where, Store store) {
-  const auto components = static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)));
+void for_each_component(const Report& report, const tinygltf::Model& model,
+                        const tinygltf::Accessor& accessor, const std::string& where, Store store) {
+  const auto components =
+      static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)));
   with_component_type(accessor.componentType, [&]<class C>(C) {
     const std::size_t bytes = components * sizeof(C);
     const Elements dense = elements_at(model, accessor.bufferView, accessor.byteOffset, bytes);
     for (std::size_t e = 0; dense.first && e < accessor.count; ++e)
-      copy_element<C>(dense.first + e * dense.stride, components, [&](std::size_t i, C v) { store(e, i, v); });
+      copy_element<C>(dense.first + e * dense.stride, components,
+                      [&](std::size_t i, C v) { store(e, i, v); });
     if (!accessor.sparse.isSparse) return;
     const auto places = sparse_places(report, model, accessor, where);
-    const std::uint8_t* values = elements_at(model, accessor.sparse.values.bufferView,
-                                             static_cast<std::size_t>(accessor.sparse.values.byteOffset), bytes).first;
+    const std::uint8_t* values =
+        elements_at(model, accessor.sparse.values.bufferView,
+                    static_cast<std::size_t>(accessor.sparse.values.byteOffset), bytes)
+            .first;
     for (std::size_t s = 0; s < places.size(); ++s)
       copy_element<C>(values + s * bytes, components, [&](std::size_t i, C v) { store(places[s], i, v); });
   });
@@ -108,8 +121,10 @@ std::vector<float> read_floats(const Report& report, const tinygltf::Model& mode
   });
   const auto bad = std::find_if(out.begin(), out.end(), [](float v) { return !std::isfinite(v); });
   if (bad != out.end())
-    report.fail("S010", where + ": element " + std::to_string((bad - out.begin()) / components) + " is not a finite number",
-                "the exporter wrote NaN or infinity: repair the mesh (remove degenerate data) and export again");
+    report.fail(
+        "S010",
+        where + ": element " + std::to_string((bad - out.begin()) / components) + " is not a finite number",
+        "the exporter wrote NaN or infinity: repair the mesh (remove degenerate data) and export again");
   return out;
 }
 
@@ -122,8 +137,9 @@ std::vector<std::uint32_t> read_indices(const Report& report, const tinygltf::Mo
        type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
     report.fail("S004", where + ": indices must be unsigned scalars of 8, 16 or 32 bits");
   std::vector<std::uint32_t> out(accessor.count);
-  for_each_component(report, model, accessor, where,
-                     [&](std::size_t e, std::size_t, auto value) { out[e] = static_cast<std::uint32_t>(value); });
+  for_each_component(report, model, accessor, where, [&](std::size_t e, std::size_t, auto value) {
+    out[e] = static_cast<std::uint32_t>(value);
+  });
   return out;
 }
 

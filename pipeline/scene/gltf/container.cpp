@@ -30,14 +30,17 @@ void check_glb(Report& report, Container& c) {
                 "convert the file to glTF 2.0");
   const std::size_t total = word_at(c, 8);
   if (total > size)
-    report.fail("S002", "the GLB header promises " + std::to_string(total) + " bytes, the file has " +
-                            std::to_string(size), kExportAgain);
+    report.fail(
+        "S002",
+        "the GLB header promises " + std::to_string(total) + " bytes, the file has " + std::to_string(size),
+        kExportAgain);
   if (total < size) report.warn("S102", "bytes after the GLB's declared length are ignored");
   c.json_begin = kHeaderBytes + kChunkHeaderBytes;
   c.json_bytes = word_at(c, 12);
   if (word_at(c, 16) != kJsonChunk) report.fail("S002", "the GLB's first chunk is not JSON", kExportAgain);
   if (c.json_bytes == 0 || c.json_bytes % 4 != 0 || c.json_begin + c.json_bytes > total)
-    report.fail("S002", "the GLB's JSON chunk has an impossible length (" + std::to_string(c.json_bytes) + " bytes)",
+    report.fail("S002",
+                "the GLB's JSON chunk has an impossible length (" + std::to_string(c.json_bytes) + " bytes)",
                 kExportAgain);
   const std::size_t next = c.json_begin + c.json_bytes;
   if (next == total) return;
@@ -45,7 +48,8 @@ void check_glb(Report& report, Container& c) {
     report.fail("S002", "the GLB's second chunk is not a BIN chunk", kExportAgain);
   c.bin_bytes = word_at(c, next);
   if (c.bin_bytes < 4 || c.bin_bytes % 4 != 0 || next + kChunkHeaderBytes + c.bin_bytes > total)
-    report.fail("S002", "the GLB's BIN chunk has an impossible length (" + std::to_string(c.bin_bytes) + " bytes)",
+    report.fail("S002",
+                "the GLB's BIN chunk has an impossible length (" + std::to_string(c.bin_bytes) + " bytes)",
                 kExportAgain);
 }
 
@@ -76,7 +80,8 @@ Container read_container(Report& report, std::size_t max_file_bytes) {
   if (!read_bytes(path, max_file_bytes, c.bytes)) report.fail("S001", "the file cannot be read");
   const bool magic = c.bytes.size() >= 4 && std::memcmp(c.bytes.data(), "glTF", 4) == 0;
   if (std::filesystem::path(path).extension() == ".glb" && !magic)
-    report.fail("S002", c.bytes.empty() ? "the file is empty" : "not a GLB: the file does not begin with \"glTF\"",
+    report.fail("S002",
+                c.bytes.empty() ? "the file is empty" : "not a GLB: the file does not begin with \"glTF\"",
                 kExportAgain);
   c.binary = magic;
   c.json_bytes = c.bytes.size();

@@ -15,7 +15,9 @@ struct Container {
   std::size_t json_begin = 0, json_bytes = 0;
   std::size_t bin_bytes = 0;  ///< of the BIN chunk, 0: none
 
-  std::string_view json() const { return {reinterpret_cast<const char*>(bytes.data()) + json_begin, json_bytes}; }
+  std::string_view json() const {
+    return {reinterpret_cast<const char*>(bytes.data()) + json_begin, json_bytes};
+  }
 };
 
 /// Reads and checks the container. Throws InputError (S001 unreadable, S002 damaged, S012 too large).

@@ -10,7 +10,8 @@ static_assert(std::endian::native == std::endian::little, "glTF is little-endian
 void ContentHash::add_word(std::uint64_t word) {
   constexpr std::uint64_t kPrime = 0x100000001b3u;
   a_ = (a_ ^ word) * kPrime;
-  a_ ^= a_ >> 32;  // the product carries only upward: without this the high bytes of a word would not reach the low bits
+  a_ ^= a_ >> 32;  // the product carries only upward: without this the high bytes of a word would not reach
+                   // the low bits
   b_ = (b_ ^ __builtin_bswap64(word)) * kPrime;
   b_ ^= b_ >> 29;
 }
@@ -25,7 +26,8 @@ void ContentHash::add(std::span<const std::uint8_t> bytes) {
   std::uint64_t tail = 0;
   if (at < bytes.size()) std::memcpy(&tail, bytes.data() + at, bytes.size() - at);
   add_word(tail);
-  add_word(bytes.size());  // files that differ in trailing zeros, or in where one file ends and the next begins
+  add_word(
+      bytes.size());  // files that differ in trailing zeros, or in where one file ends and the next begins
 }
 
 std::string ContentHash::hex() const {

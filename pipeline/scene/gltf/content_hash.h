@@ -5,8 +5,9 @@
 
 namespace hwsim::pipeline::gltf {
 
-/// Two 64-bit FNV-1a sums over 8-byte little-endian words, from different bases, the second fed with byte-swapped
-/// words: a key for caches, not a defense against forgers. By words, since by bytes 4 GiB would take ten seconds.
+/// Two 64-bit FNV-1a sums over 8-byte little-endian words, from different bases, the second fed with
+/// byte-swapped words: a key for caches, not a defense against forgers. By words, since by bytes 4 GiB would
+/// take ten seconds.
 class ContentHash {
  public:
   void add(std::span<const std::uint8_t> bytes);

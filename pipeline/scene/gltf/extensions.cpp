@@ -10,15 +10,15 @@ namespace hwsim::pipeline::gltf {
 
 std::string effect_of_extension(const std::string& name) {
   if (is_honored_extension(name)) return "";
-  constexpr std::array<std::pair<const char*, const char*>, 8> kEffects = {{
-      {"KHR_texture_transform", "texture coordinates are used as they are"},
-      {"KHR_texture_basisu", "textures with no PNG or JPEG beside the KTX2 image are left out"},
-      {"EXT_texture_webp", "textures with no PNG or JPEG beside the WebP image are left out"},
-      {"KHR_draco_mesh_compression", "the uncompressed accessors are read"},
-      {"EXT_meshopt_compression", "the uncompressed buffers are read"},
-      {"EXT_mesh_gpu_instancing", "the mesh is drawn once, at its node"},
-      {"KHR_materials_variants", "the default materials are drawn"},
-      {"MSFT_lod", "the finest level is drawn"}}};
+  constexpr std::array<std::pair<const char*, const char*>, 8> kEffects = {
+      {{"KHR_texture_transform", "texture coordinates are used as they are"},
+       {"KHR_texture_basisu", "textures with no PNG or JPEG beside the KTX2 image are left out"},
+       {"EXT_texture_webp", "textures with no PNG or JPEG beside the WebP image are left out"},
+       {"KHR_draco_mesh_compression", "the uncompressed accessors are read"},
+       {"EXT_meshopt_compression", "the uncompressed buffers are read"},
+       {"EXT_mesh_gpu_instancing", "the mesh is drawn once, at its node"},
+       {"KHR_materials_variants", "the default materials are drawn"},
+       {"MSFT_lod", "the finest level is drawn"}}};
   for (const auto& [known, effect] : kEffects)
     if (name == known) return effect;
   if (name.rfind("KHR_materials_", 0) == 0) return "the metallic-roughness base material is drawn";

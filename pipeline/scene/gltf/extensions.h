@@ -5,7 +5,8 @@
 
 namespace hwsim::pipeline::gltf {
 
-/// What happens to a file that uses an extension without requiring it: "the base material is drawn"; "" if honored.
+/// What happens to a file that uses an extension without requiring it: "the base material is drawn"; "" if
+/// honored.
 std::string effect_of_extension(const std::string& name);
 
 /// Notes each extension that is used and ignored, and animations.

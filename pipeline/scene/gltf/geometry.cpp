@@ -27,7 +27,8 @@ std::uint64_t triangles_of(const tinygltf::Model& model, const tinygltf::Primiti
   if (source < 0) return 0;
   const std::uint64_t count = accessor_at(model, source).count;
   if (primitive.mode == TINYGLTF_MODE_TRIANGLES) return count / 3;
-  const bool chained = primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP || primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN;
+  const bool chained =
+      primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP || primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN;
   return chained && count > 2 ? count - 2 : 0;
 }
 
@@ -54,8 +55,9 @@ struct Needs {
 
 Needs needs_of(const Material& material) {
   Needs needs;
-  for (const TextureRef* ref : {&material.base_color_texture, &material.metallic_roughness_texture,
-                                &material.normal_texture, &material.emissive_texture, &material.occlusion_texture}) {
+  for (const TextureRef* ref :
+       {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
+        &material.emissive_texture, &material.occlusion_texture}) {
     if (ref->texture < 0) continue;
     (ref->uv_set == 1 ? needs.uv1 : needs.uv0) = true;
   }
@@ -73,10 +75,12 @@ class MeshBuilder {
     if (!draws_triangles(primitive, where)) return;
     const Needs needs = needs_of(materials_[static_cast<std::size_t>(material)]);
     std::vector<std::uint32_t> indices = read_triangles(primitive, where);
-    if (indices.empty()) return report_.note("S105", "a primitive has no whole triangle and draws nothing", where);
+    if (indices.empty())
+      return report_.note("S105", "a primitive has no whole triangle and draws nothing", where);
     count_stored_bytes(primitive);
-    const std::uint32_t base = attribute(primitive, "NORMAL") < 0 ? add_flat(primitive, where, needs, indices)
-                                                                  : add_shared(primitive, where, needs, indices);
+    const std::uint32_t base = attribute(primitive, "NORMAL") < 0
+                                   ? add_flat(primitive, where, needs, indices)
+                                   : add_shared(primitive, where, needs, indices);
     Mesh::Part part;
     part.first_index = static_cast<std::uint32_t>(mesh_.indices.size());
     part.index_count = static_cast<std::uint32_t>(indices.size());
@@ -109,10 +113,12 @@ class MeshBuilder {
     std::vector<std::uint32_t> order;
     if (primitive.indices >= 0) {
       order = read_indices(report_, model_, primitive.indices, where + " indices");
-      const auto bad = std::find_if(order.begin(), order.end(), [&](std::uint32_t i) { return i >= vertex_count; });
+      const auto bad =
+          std::find_if(order.begin(), order.end(), [&](std::uint32_t i) { return i >= vertex_count; });
       if (bad != order.end())
         report_.fail("S009", where + " indices: element " + std::to_string(bad - order.begin()) + " is " +
-                                 std::to_string(*bad) + ", but there are " + std::to_string(vertex_count) + " vertices");
+                                 std::to_string(*bad) + ", but there are " + std::to_string(vertex_count) +
+                                 " vertices");
     } else {
       order.resize(vertex_count);
       for (std::size_t i = 0; i < vertex_count; ++i) order[i] = static_cast<std::uint32_t>(i);
@@ -137,9 +143,11 @@ class MeshBuilder {
                            const std::vector<std::uint32_t>& indices) {
     std::string key = std::to_string(needs.uv0) + std::to_string(needs.uv1) + std::to_string(needs.tangents) +
                       std::to_string(needs.tangent_uv_set);
-    for (const auto& [name, accessor] : primitive.attributes) key += ' ' + name + ' ' + std::to_string(accessor);
+    for (const auto& [name, accessor] : primitive.attributes)
+      key += ' ' + name + ' ' + std::to_string(accessor);
     const bool per_primitive = needs.tangents && attribute(primitive, "TANGENT") < 0;
-    if (const auto found = base_of_.find(key); found != base_of_.end() && !per_primitive) return found->second;
+    if (const auto found = base_of_.find(key); found != base_of_.end() && !per_primitive)
+      return found->second;
     Vertices vertices = read_vertices(primitive, where, needs);
     if (const std::size_t wrong = repair_normals(vertices, indices); wrong > 0)
       report_.warn("S107", "normals that are not of unit length were normalized", where);
@@ -156,7 +164,8 @@ class MeshBuilder {
   }
 
   template <class T>
-  std::vector<T> read_attribute(const tinygltf::Primitive& primitive, const char* name, const std::string& where) {
+  std::vector<T> read_attribute(const tinygltf::Primitive& primitive, const char* name,
+                                const std::string& where) {
     constexpr int kComponents = static_cast<int>(sizeof(T) / sizeof(float));
     const int accessor = attribute(primitive, name);
     if (accessor < 0) return {};
@@ -164,8 +173,8 @@ class MeshBuilder {
     const std::vector<float> flat = read_floats(report_, model_, accessor, kComponents, place);
     const std::size_t wanted = accessor_at(model_, attribute(primitive, "POSITION")).count;
     if (flat.size() != wanted * kComponents)
-      report_.fail("S009", place + " has " + std::to_string(flat.size() / kComponents) + " elements, POSITION has " +
-                               std::to_string(wanted));
+      report_.fail("S009", place + " has " + std::to_string(flat.size() / kComponents) +
+                               " elements, POSITION has " + std::to_string(wanted));
     std::vector<T> out(wanted);
     if (!flat.empty()) std::memcpy(static_cast<void*>(out.data()), flat.data(), flat.size() * sizeof(float));
     return out;
@@ -177,7 +186,8 @@ class MeshBuilder {
       return read_attribute<glm::vec4>(primitive, "COLOR_0", where);
     const auto rgb = read_attribute<glm::vec3>(primitive, "COLOR_0", where);
     std::vector<glm::vec4> out(rgb.size());
-    std::transform(rgb.begin(), rgb.end(), out.begin(), [](const glm::vec3& c) { return glm::vec4(c, 1.0f); });
+    std::transform(rgb.begin(), rgb.end(), out.begin(),
+                   [](const glm::vec3& c) { return glm::vec4(c, 1.0f); });
     return out;
   }
 
@@ -189,7 +199,8 @@ class MeshBuilder {
     v.uv1 = read_attribute<glm::vec2>(primitive, "TEXCOORD_1", where);
     v.colors = read_colors(primitive, where);
     v.radius = read_attribute<float>(primitive, "_RADIUS", where);
-    if (needs.tangents || !v.radius.empty()) v.tangents = read_attribute<glm::vec4>(primitive, "TANGENT", where);
+    if (needs.tangents || !v.radius.empty())
+      v.tangents = read_attribute<glm::vec4>(primitive, "TANGENT", where);
     check_wire(v, where);
     for (auto& [uv, needed] : {std::pair{&v.uv0, needs.uv0}, std::pair{&v.uv1, needs.uv1}}) {
       if (!needed || !uv->empty()) continue;
@@ -202,7 +213,8 @@ class MeshBuilder {
   void check_wire(Vertices& v, const std::string& where) {
     if (v.radius.empty()) return;
     if (v.normals.empty() || v.tangents.empty()) {
-      report_.warn("S109", "_RADIUS is ignored: a wire needs NORMAL (outward) and TANGENT (along its axis)", where);
+      report_.warn("S109", "_RADIUS is ignored: a wire needs NORMAL (outward) and TANGENT (along its axis)",
+                   where);
       v.radius.clear();
       v.tangents.clear();
       return;
@@ -214,7 +226,8 @@ class MeshBuilder {
   void finish_tangents(Vertices& v, const std::vector<std::uint32_t>& indices, const std::string& where,
                        const Needs& needs) {
     if (!v.tangents.empty()) {
-      if (repair_tangents(v) > 0) report_.warn("S107", "tangents that are not of unit length were repaired", where);
+      if (repair_tangents(v) > 0)
+        report_.warn("S107", "tangents that are not of unit length were repaired", where);
     } else if (needs.tangents) {
       generate_tangents(v, indices, needs.tangent_uv_set);
       report_.note("S106", "no tangents: they were generated for the normal texture", where);
@@ -223,10 +236,13 @@ class MeshBuilder {
 
   void count_stored_bytes(const tinygltf::Primitive& primitive) {
     int bytes = 0;
-    for (const char* name : {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0", "_RADIUS"})
-      if (const int accessor = attribute(primitive, name); accessor >= 0) bytes += element_bytes(model_, accessor);
+    for (const char* name :
+         {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0", "_RADIUS"})
+      if (const int accessor = attribute(primitive, name); accessor >= 0)
+        bytes += element_bytes(model_, accessor);
     mesh_.vertex_bytes = std::max(mesh_.vertex_bytes, bytes);
-    if (primitive.indices >= 0) index_bytes_ = std::max(index_bytes_, element_bytes(model_, primitive.indices));
+    if (primitive.indices >= 0)
+      index_bytes_ = std::max(index_bytes_, element_bytes(model_, primitive.indices));
   }
 
   void set_bounds() {
@@ -249,15 +265,16 @@ class MeshBuilder {
 
 }  // namespace
 
-Mesh build_mesh(Report& report, const tinygltf::Model& model, int mesh_index, const std::vector<Material>& materials,
-                int default_material) {
+Mesh build_mesh(Report& report, const tinygltf::Model& model, int mesh_index,
+                const std::vector<Material>& materials, int default_material) {
   const auto place = static_cast<std::size_t>(mesh_index);
   const tinygltf::Mesh& source = model.meshes[place];
   MeshBuilder builder(report, model, materials);
   for (std::size_t i = 0; i < source.primitives.size(); ++i) {
     const tinygltf::Primitive& primitive = source.primitives[i];
     const std::string where = element("meshes", place) + "." + element("primitives", i);
-    if (!primitive.targets.empty()) report.note("S110", "morph targets are ignored: the base shape is drawn", where);
+    if (!primitive.targets.empty())
+      report.note("S110", "morph targets are ignored: the base shape is drawn", where);
     builder.add(primitive, where, primitive.material >= 0 ? primitive.material : default_material);
   }
   Mesh mesh = builder.take();

@@ -14,10 +14,14 @@ namespace {
 
 Wrap wrap_of(const Report& report, int code, const std::string& where) {
   switch (code) {
-    case TINYGLTF_TEXTURE_WRAP_REPEAT: return Wrap::repeat;
-    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE: return Wrap::clamp_to_edge;
-    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT: return Wrap::mirrored_repeat;
-    default: report.fail("S004", where + " wrap mode " + std::to_string(code) + " does not exist");
+    case TINYGLTF_TEXTURE_WRAP_REPEAT:
+      return Wrap::repeat;
+    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+      return Wrap::clamp_to_edge;
+    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+      return Wrap::mirrored_repeat;
+    default:
+      report.fail("S004", where + " wrap mode " + std::to_string(code) + " does not exist");
   }
 }
 
@@ -26,19 +30,37 @@ Sampler sampler_of(const Report& report, const tinygltf::Sampler& source, const 
   out.wrap_u = wrap_of(report, source.wrapS, where);
   out.wrap_v = wrap_of(report, source.wrapT, where);
   switch (source.magFilter) {
-    case -1: case TINYGLTF_TEXTURE_FILTER_LINEAR: break;
-    case TINYGLTF_TEXTURE_FILTER_NEAREST: out.mag = Filter::nearest; break;
-    default: report.fail("S004", where + ".magFilter " + std::to_string(source.magFilter) + " does not exist");
+    case -1:
+    case TINYGLTF_TEXTURE_FILTER_LINEAR:
+      break;
+    case TINYGLTF_TEXTURE_FILTER_NEAREST:
+      out.mag = Filter::nearest;
+      break;
+    default:
+      report.fail("S004", where + ".magFilter " + std::to_string(source.magFilter) + " does not exist");
   }
   const auto set_min = [&](Filter min, MipFilter mip) { out.min = min, out.mip = mip; };
   switch (source.minFilter) {
-    case -1: case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR: break;
-    case TINYGLTF_TEXTURE_FILTER_NEAREST: set_min(Filter::nearest, MipFilter::none); break;
-    case TINYGLTF_TEXTURE_FILTER_LINEAR: set_min(Filter::linear, MipFilter::none); break;
-    case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST: set_min(Filter::nearest, MipFilter::nearest); break;
-    case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST: set_min(Filter::linear, MipFilter::nearest); break;
-    case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR: set_min(Filter::nearest, MipFilter::linear); break;
-    default: report.fail("S004", where + ".minFilter " + std::to_string(source.minFilter) + " does not exist");
+    case -1:
+    case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR:
+      break;
+    case TINYGLTF_TEXTURE_FILTER_NEAREST:
+      set_min(Filter::nearest, MipFilter::none);
+      break;
+    case TINYGLTF_TEXTURE_FILTER_LINEAR:
+      set_min(Filter::linear, MipFilter::none);
+      break;
+    case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST:
+      set_min(Filter::nearest, MipFilter::nearest);
+      break;
+    case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST:
+      set_min(Filter::linear, MipFilter::nearest);
+      break;
+    case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR:
+      set_min(Filter::nearest, MipFilter::linear);
+      break;
+    default:
+      report.fail("S004", where + ".minFilter " + std::to_string(source.minFilter) + " does not exist");
   }
   return out;
 }
@@ -71,7 +93,8 @@ class MaterialBuilder {
 
  private:
   float unit(double value, const std::string& what) {
-    if (value < 0.0 || value > 1.0) report_.warn("S111", "material factors outside 0 to 1 were clamped", what);
+    if (value < 0.0 || value > 1.0)
+      report_.warn("S111", "material factors outside 0 to 1 were clamped", what);
     return static_cast<float>(std::clamp(value, 0.0, 1.0));
   }
 
@@ -91,13 +114,15 @@ class MaterialBuilder {
     else if (source.alphaMode == "BLEND")
       out.alpha_mode = AlphaMode::blend;
     else
-      report_.fail("S004", where + ".alphaMode is \"" + source.alphaMode + "\", must be OPAQUE, MASK or BLEND");
+      report_.fail("S004",
+                   where + ".alphaMode is \"" + source.alphaMode + "\", must be OPAQUE, MASK or BLEND");
   }
 
   void set_textures(Material& out, const tinygltf::Material& source, const std::string& where) {
     const auto& pbr = source.pbrMetallicRoughness;
     out.base_color_texture = ref(pbr.baseColorTexture, true, where + ".baseColorTexture");
-    out.metallic_roughness_texture = ref(pbr.metallicRoughnessTexture, false, where + ".metallicRoughnessTexture");
+    out.metallic_roughness_texture =
+        ref(pbr.metallicRoughnessTexture, false, where + ".metallicRoughnessTexture");
     out.normal_texture = ref(source.normalTexture, false, where + ".normalTexture");
     out.emissive_texture = ref(source.emissiveTexture, true, where + ".emissiveTexture");
     out.occlusion_texture = ref(source.occlusionTexture, false, where + ".occlusionTexture");
@@ -112,10 +137,12 @@ class MaterialBuilder {
       return out;
     }
     if (info.extensions.count("KHR_texture_transform"))
-      report_.warn("S101", "KHR_texture_transform is ignored: the texture coordinates are used as they are", where);
+      report_.warn("S101", "KHR_texture_transform is ignored: the texture coordinates are used as they are",
+                   where);
     const tinygltf::Texture& texture = model_.textures[static_cast<std::size_t>(info.index)];
     if (texture.source < 0) {
-      const std::string why = texture.extensions.empty() ? "no image" : "only an image of " + texture.extensions.begin()->first;
+      const std::string why =
+          texture.extensions.empty() ? "no image" : "only an image of " + texture.extensions.begin()->first;
       report_.warn("S112", "a texture has " + why + " and is left out", where);
       return out;
     }
@@ -163,7 +190,8 @@ std::vector<Texture> build_textures(const Report& report, const Source& source,
     const tinygltf::Image& info = source.model.images[image];
     const std::string where = element("images", image) + (info.uri.empty() ? "" : " (" + info.uri + ")");
     if (source.images[image].empty())
-      report.fail("S013", where + " cannot be read", "put the image beside the .gltf file, or remove the texture");
+      report.fail("S013", where + " cannot be read",
+                  "put the image beside the .gltf file, or remove the texture");
     RawImage raw = decode_image(source.images[image], report.file() + ": " + where);
     out[i].name = info.name.empty() ? element("images", image) : info.name;
     out[i].srgb = requests[i].second;

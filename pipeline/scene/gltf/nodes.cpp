@@ -33,9 +33,11 @@ void check_matrix(const Report& report, const glm::dmat4& m, int node) {
   for (int c = 0; c < 4; ++c)
     for (int r = 0; r < 4; ++r)
       if (!(std::abs(m[c][r]) <= kMax))
-        report.fail("S010", element("nodes", static_cast<std::size_t>(node)) + "'s transformation is not finite or above 1e18");
+        report.fail("S010", element("nodes", static_cast<std::size_t>(node)) +
+                                "'s transformation is not finite or above 1e18");
   if (m[0][3] != 0.0 || m[1][3] != 0.0 || m[2][3] != 0.0 || m[3][3] != 1.0)
-    report.fail("S010", element("nodes", static_cast<std::size_t>(node)) + ".matrix is not affine: its last row must be 0 0 0 1");
+    report.fail("S010", element("nodes", static_cast<std::size_t>(node)) +
+                            ".matrix is not affine: its last row must be 0 0 0 1");
 }
 
 // Rotation and position without scale: a camera's or light's frame looks along -z.
@@ -91,14 +93,16 @@ std::optional<Light> light_of(Report& report, const tinygltf::Light& source, con
   return light;
 }
 
-Camera camera_of(const Report& report, const tinygltf::Camera& source, const Frame& frame, const std::string& where) {
+Camera camera_of(const Report& report, const tinygltf::Camera& source, const Frame& frame,
+                 const std::string& where) {
   Camera camera;
   camera.view_from_world = view_of(frame);
   double near = 0.0, far = 0.0;
   if (source.type == "perspective") {
     const auto& p = source.perspective;
     if (!(p.yfov > 1e-4 && p.yfov < std::numbers::pi * 0.999))
-      report.fail("S004", where + ".perspective.yfov is " + std::to_string(p.yfov) + " rad, must be between 0 and pi");
+      report.fail("S004", where + ".perspective.yfov is " + std::to_string(p.yfov) +
+                              " rad, must be between 0 and pi");
     camera.fov_y_rad = static_cast<float>(p.yfov);
     near = p.znear, far = p.zfar;
     if (!(near > 1e-9)) report.fail("S004", where + ".perspective.znear must be above 0");
@@ -139,8 +143,10 @@ std::vector<PlacedNode> walk_scene(Report& report, const tinygltf::Model& model)
     stack.pop_back();
     const auto index = static_cast<std::size_t>(next.node);
     if (seen[index])
-      report.fail("S011", element("nodes", index) + " is reached twice: the nodes form a cycle, or it has two parents",
-                  "glTF nodes must form trees; to draw a mesh twice, let two nodes refer to it");
+      report.fail(
+          "S011",
+          element("nodes", index) + " is reached twice: the nodes form a cycle, or it has two parents",
+          "glTF nodes must form trees; to draw a mesh twice, let two nodes refer to it");
     seen[index] = true;
     next.world_from_local = next.world_from_local * local_matrix(model.nodes[index]);
     check_matrix(report, next.world_from_local, next.node);
@@ -150,7 +156,8 @@ std::vector<PlacedNode> walk_scene(Report& report, const tinygltf::Model& model)
   return placed;
 }
 
-std::vector<Light> build_lights(Report& report, const tinygltf::Model& model, const std::vector<PlacedNode>& nodes) {
+std::vector<Light> build_lights(Report& report, const tinygltf::Model& model,
+                                const std::vector<PlacedNode>& nodes) {
   std::vector<Light> out;
   bool shadow_given = false;
   for (const PlacedNode& placed : nodes) {
@@ -176,7 +183,8 @@ std::vector<Light> build_lights(Report& report, const tinygltf::Model& model, co
   return out;
 }
 
-std::vector<Camera> build_cameras(Report& report, const tinygltf::Model& model, const std::vector<PlacedNode>& nodes) {
+std::vector<Camera> build_cameras(Report& report, const tinygltf::Model& model,
+                                  const std::vector<PlacedNode>& nodes) {
   std::vector<Camera> out;
   for (const PlacedNode& placed : nodes) {
     const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(placed.node)];
@@ -184,12 +192,14 @@ std::vector<Camera> build_cameras(Report& report, const tinygltf::Model& model, 
     const auto index = static_cast<std::size_t>(node.camera);
     const std::optional<Frame> frame = frame_of(placed.world_from_local);
     if (!frame) {
-      report.warn("S115", "cameras on a node with a scale of zero are left out", element("nodes", static_cast<std::size_t>(placed.node)));
+      report.warn("S115", "cameras on a node with a scale of zero are left out",
+                  element("nodes", static_cast<std::size_t>(placed.node)));
       continue;
     }
     out.push_back(camera_of(report, model.cameras[index], *frame, element("cameras", index)));
-    out.back().name = !node.name.empty() ? node.name
-                      : !model.cameras[index].name.empty() ? model.cameras[index].name : element("cameras", index);
+    out.back().name = !node.name.empty()                   ? node.name
+                      : !model.cameras[index].name.empty() ? model.cameras[index].name
+                                                           : element("cameras", index);
   }
   return out;
 }

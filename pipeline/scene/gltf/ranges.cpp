@@ -29,8 +29,8 @@ class RangeChecker {
       if (!binary || i != 0)
         add("S007", element("buffers", i) + " has no uri; only the first buffer of a GLB may omit it");
       else if (bytes > bin_bytes)
-        add("S007", element("buffers", i) + ".byteLength is " + std::to_string(bytes) + ", but the BIN chunk holds " +
-                        std::to_string(bin_bytes) + " bytes");
+        add("S007", element("buffers", i) + ".byteLength is " + std::to_string(bytes) +
+                        ", but the BIN chunk holds " + std::to_string(bin_bytes) + " bytes");
     });
   }
 
@@ -40,8 +40,8 @@ class RangeChecker {
       const std::uint64_t offset = count_of(view, "byteOffset"), bytes = count_of(view, "byteLength");
       if (bytes == 0) add("S008", element("bufferViews", i) + ".byteLength is 0, must be positive");
       if (offset + bytes > buffer_bytes)
-        add("S008", element("bufferViews", i) + " ends at byte " + std::to_string(offset + bytes) + " of a buffer of " +
-                        std::to_string(buffer_bytes) + " bytes");
+        add("S008", element("bufferViews", i) + " ends at byte " + std::to_string(offset + bytes) +
+                        " of a buffer of " + std::to_string(buffer_bytes) + " bytes");
       if (count_of(view, "byteStride") > 252)
         add("S008", element("bufferViews", i) + ".byteStride is above 252");
     });
@@ -51,9 +51,11 @@ class RangeChecker {
     each("accessors", [&](const json& accessor, std::size_t i) {
       const std::string where = element("accessors", i);
       const auto component = static_cast<std::uint64_t>(component_bytes(count_of(accessor, "componentType")));
-      const auto components = static_cast<std::uint64_t>(component_count(accessor["type"].get<std::string>()));
+      const auto components =
+          static_cast<std::uint64_t>(component_count(accessor["type"].get<std::string>()));
       const std::uint64_t count = count_of(accessor, "count");
-      if (component == 0) add("S004", where + ".componentType " + accessor["componentType"].dump() + " does not exist");
+      if (component == 0)
+        add("S004", where + ".componentType " + accessor["componentType"].dump() + " does not exist");
       if (components == 0) add("S004", where + ".type " + accessor["type"].dump() + " does not exist");
       if (count == 0 || count > kMaxCount)
         add("S008", where + ".count is " + std::to_string(count) + ", must be from 1 to 4294967295");
@@ -75,13 +77,15 @@ class RangeChecker {
 
   void scenes() {
     if (!root_.contains("scenes") || root_["scenes"].empty())
-      errors_.push_back(report_.error("S014", "the file has no scene", "export with a scene, or add one to the file"));
+      errors_.push_back(
+          report_.error("S014", "the file has no scene", "export with a scene, or add one to the file"));
   }
 
   std::vector<Diagnostic> take() { return std::move(errors_); }
 
  private:
-  // An accessor without a view is all zeros and takes no bytes in the file: bounded, or a 200-byte file fills memory.
+  // An accessor without a view is all zeros and takes no bytes in the file: bounded, or a 200-byte file fills
+  // memory.
   static constexpr std::uint64_t kMaxUnbacked = 1u << 24;
 
   void unbacked(const std::string& where, std::uint64_t count) {
@@ -103,21 +107,23 @@ class RangeChecker {
     const std::uint64_t stride = count_of(view, "byteStride", element_bytes);
     const std::uint64_t offset = count_of(holder, "byteOffset");
     if (stride != 0 && stride < element_bytes)
-      return add("S008", where + " has elements of " + std::to_string(element_bytes) + " bytes at a stride of " +
-                             std::to_string(stride));
+      return add("S008", where + " has elements of " + std::to_string(element_bytes) +
+                             " bytes at a stride of " + std::to_string(stride));
     if (stride % component != 0)
-      return add("S008", where + ": the stride of " + std::to_string(stride) + " is not a multiple of the component's " +
-                             std::to_string(component) + " bytes");
+      return add("S008", where + ": the stride of " + std::to_string(stride) +
+                             " is not a multiple of the component's " + std::to_string(component) + " bytes");
     const std::uint64_t end = offset + (stride ? stride : element_bytes) * (count - 1) + element_bytes;
     if (end > count_of(view, "byteLength"))
       add("S008", where + " ends at byte " + std::to_string(end) + " of a buffer view of " +
                       std::to_string(count_of(view, "byteLength")) + " bytes");
   }
 
-  void sparse(const std::string& where, const json& sparse, std::uint64_t count, std::uint64_t element_bytes) {
+  void sparse(const std::string& where, const json& sparse, std::uint64_t count,
+              std::uint64_t element_bytes) {
     const std::uint64_t sparse_count = count_of(sparse, "count");
     if (sparse_count == 0 || sparse_count > std::min<std::uint64_t>(count, 0x7fffffff))
-      return add("S008", where + ".sparse.count is " + std::to_string(sparse_count) + ", must be from 1 to the count");
+      return add("S008", where + ".sparse.count is " + std::to_string(sparse_count) +
+                             ", must be from 1 to the count");
     const std::uint64_t type = count_of(sparse["indices"], "componentType");
     if (type != 5121 && type != 5123 && type != 5125)
       return add("S004", where + ".sparse.indices.componentType must be 5121, 5123 or 5125");
@@ -147,22 +153,30 @@ class RangeChecker {
 
 int component_bytes(std::uint64_t component_type) {
   switch (component_type) {
-    case 5120: case 5121: return 1;
-    case 5122: case 5123: return 2;
-    case 5125: case 5126: return 4;
-    default: return 0;
+    case 5120:
+    case 5121:
+      return 1;
+    case 5122:
+    case 5123:
+      return 2;
+    case 5125:
+    case 5126:
+      return 4;
+    default:
+      return 0;
   }
 }
 
 int component_count(std::string_view type) {
-  constexpr std::array<std::pair<std::string_view, int>, 7> kCounts = {{
-      {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}}};
+  constexpr std::array<std::pair<std::string_view, int>, 7> kCounts = {
+      {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}}};
   for (const auto& [name, count] : kCounts)
     if (name == type) return count;
   return 0;
 }
 
-std::vector<Diagnostic> check_ranges(const Report& report, const json& root, std::size_t bin_bytes, bool binary) {
+std::vector<Diagnostic> check_ranges(const Report& report, const json& root, std::size_t bin_bytes,
+                                     bool binary) {
   RangeChecker checker(report, root);
   checker.scenes();
   checker.buffers(bin_bytes, binary);

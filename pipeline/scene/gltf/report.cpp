@@ -23,7 +23,8 @@ void Report::warn(const std::string& code, const std::string& what, const std::s
   add(Severity::warning, code, what, element);
 }
 
-void Report::add(Severity severity, const std::string& code, const std::string& what, const std::string& element) {
+void Report::add(Severity severity, const std::string& code, const std::string& what,
+                 const std::string& element) {
   const auto [place, is_new] = entry_of_.try_emplace(code + '\n' + what, entries_.size());
   if (is_new) entries_.push_back({severity, code, what, element, 0});
   ++entries_[place->second].count;

@@ -8,16 +8,18 @@
 
 namespace hwsim::pipeline::gltf {
 
-/// Says what is wrong with one file, and collects what was ignored or generated. A file may trigger the same note for
-/// each of ten thousand primitives, so equal notes merge: the first element and a count stay.
+/// Says what is wrong with one file, and collects what was ignored or generated. A file may trigger the same
+/// note for each of ten thousand primitives, so equal notes merge: the first element and a count stay.
 class Report {
  public:
   explicit Report(std::string file) : file_(std::move(file)) {}
 
-  [[noreturn]] void fail(const std::string& code, const std::string& message, const std::string& help = "") const;
+  [[noreturn]] void fail(const std::string& code, const std::string& message,
+                         const std::string& help = "") const;
   Diagnostic error(const std::string& code, const std::string& message, const std::string& help = "") const;
 
-  /// `what` reads on its own ("normals generated, one a triangle"); `element` says where ("meshes[2].primitives[0]").
+  /// `what` reads on its own ("normals generated, one a triangle"); `element` says where
+  /// ("meshes[2].primitives[0]").
   void note(const std::string& code, const std::string& what, const std::string& element = "");
   void warn(const std::string& code, const std::string& what, const std::string& element = "");
 

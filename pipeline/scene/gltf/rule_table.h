@@ -5,10 +5,23 @@
 namespace hwsim::pipeline::gltf {
 
 enum class Kind {
-  text, texts, boolean, number, numbers, count, index, indices, index_map, index_maps, object, objects, object_map
+  text,
+  texts,
+  boolean,
+  number,
+  numbers,
+  count,
+  index,
+  indices,
+  index_map,
+  index_maps,
+  object,
+  objects,
+  object_map
 };
 
-/// What a key's value must be. `target`: the array that an index points into. `length`: of `numbers`, 0 is any.
+/// What a key's value must be. `target`: the array that an index points into. `length`: of `numbers`, 0 is
+/// any.
 struct Rule {
   const char* key;
   Kind kind;

@@ -41,27 +41,37 @@ class RuleChecker {
 
   void check_value(const json& value, const Rule& rule, const std::string& path) {
     switch (rule.kind) {
-      case Kind::text: return expect(value.is_string(), path, "a string", value);
-      case Kind::boolean: return expect(value.is_boolean(), path, "true or false", value);
-      case Kind::number: return expect(is_finite(value), path, "a number", value);
-      case Kind::count: return expect(is_count(value), path, "a whole number from 0 up", value);
-      case Kind::index: return check_index(value, rule.target, path);
-      case Kind::numbers: return check_numbers(value, rule, path);
-      case Kind::texts: return check_each(value, path, [&](const json& v, const std::string& p) {
-        expect(v.is_string(), p, "a string", v);
-      });
-      case Kind::indices: return check_each(value, path, [&](const json& v, const std::string& p) {
-        check_index(v, rule.target, p);
-      });
-      case Kind::objects: return check_each(value, path, [&](const json& v, const std::string& p) {
-        check_nested(v, rule, p);
-      });
-      case Kind::object: return check_nested(value, rule, path);
-      case Kind::index_map: return check_index_map(value, rule, path);
-      case Kind::index_maps: return check_each(value, path, [&](const json& v, const std::string& p) {
-        check_index_map(v, rule, p);
-      });
-      case Kind::object_map: return check_object_map(value, rule, path);
+      case Kind::text:
+        return expect(value.is_string(), path, "a string", value);
+      case Kind::boolean:
+        return expect(value.is_boolean(), path, "true or false", value);
+      case Kind::number:
+        return expect(is_finite(value), path, "a number", value);
+      case Kind::count:
+        return expect(is_count(value), path, "a whole number from 0 up", value);
+      case Kind::index:
+        return check_index(value, rule.target, path);
+      case Kind::numbers:
+        return check_numbers(value, rule, path);
+      case Kind::texts:
+        return check_each(value, path, [&](const json& v, const std::string& p) {
+          expect(v.is_string(), p, "a string", v);
+        });
+      case Kind::indices:
+        return check_each(value, path,
+                          [&](const json& v, const std::string& p) { check_index(v, rule.target, p); });
+      case Kind::objects:
+        return check_each(value, path,
+                          [&](const json& v, const std::string& p) { check_nested(v, rule, p); });
+      case Kind::object:
+        return check_nested(value, rule, path);
+      case Kind::index_map:
+        return check_index_map(value, rule, path);
+      case Kind::index_maps:
+        return check_each(value, path,
+                          [&](const json& v, const std::string& p) { check_index_map(v, rule, p); });
+      case Kind::object_map:
+        return check_object_map(value, rule, path);
     }
   }
 
@@ -87,14 +97,16 @@ class RuleChecker {
   void check_object_map(const json& value, const Rule& rule, const std::string& path) {
     expect(value.is_object(), path, "an object", value);
     if (!value.is_object()) return;
-    for (const auto& [key, item] : value.items()) expect(item.is_object(), path + "." + key, "an object", item);
+    for (const auto& [key, item] : value.items())
+      expect(item.is_object(), path + "." + key, "an object", item);
     check_object(value, rule.children, path);
   }
 
   void check_numbers(const json& value, const Rule& rule, const std::string& path) {
     const bool right = value.is_array() && (rule.length == 0 || value.size() == rule.length) &&
                        std::all_of(value.begin(), value.end(), is_finite);
-    expect(right, path, rule.length ? std::to_string(rule.length) + " numbers" : "an array of numbers", value);
+    expect(right, path, rule.length ? std::to_string(rule.length) + " numbers" : "an array of numbers",
+           value);
   }
 
   void check_index(const json& value, const char* target, const std::string& path) {
@@ -120,7 +132,8 @@ class RuleChecker {
   }
 
   static bool is_finite(const json& value) { return value.is_number() && std::isfinite(value.get<double>()); }
-  // 2^53: whole numbers that a double holds; sums and products of two below stay inside 64 bits where it matters.
+  // 2^53: whole numbers that a double holds; sums and products of two below stay inside 64 bits where it
+  // matters.
   static bool is_count(const json& value) {
     if (!value.is_number()) return false;
     const double number = value.get<double>();
@@ -154,7 +167,8 @@ bool nests_too_deep(std::string_view text) {
 
 void check_asset(const Report& report, const json& root) {
   const auto asset = root.find("asset");
-  if (asset == root.end() || !asset->is_object() || !asset->contains("version") || !(*asset)["version"].is_string())
+  if (asset == root.end() || !asset->is_object() || !asset->contains("version") ||
+      !(*asset)["version"].is_string())
     report.fail("S014", "asset.version is missing", "the file is no glTF 2.0: export it again");
   const std::string version = (*asset)["version"];
   if (version.rfind("2.", 0) != 0)
@@ -168,8 +182,9 @@ void check_required_extensions(const Report& report, const json& root) {
   std::vector<Diagnostic> errors;
   for (const json& name : *required)
     if (name.is_string() && !is_honored_extension(name.get<std::string>()))
-      errors.push_back(report.error("S006", "the file requires the extension " + name.get<std::string>() +
-                                                ", which is not supported; nothing was loaded",
+      errors.push_back(report.error("S006",
+                                    "the file requires the extension " + name.get<std::string>() +
+                                        ", which is not supported; nothing was loaded",
                                     "export without it (no mesh compression, PNG or JPEG images)"));
   if (!errors.empty()) throw InputError(std::move(errors));
 }
@@ -177,7 +192,8 @@ void check_required_extensions(const Report& report, const json& root) {
 }  // namespace
 
 bool is_honored_extension(std::string_view name) {
-  constexpr std::array<std::string_view, 4> kHonored = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
+  constexpr std::array<std::string_view, 4> kHonored = {"KHR_lights_punctual",
+                                                        "KHR_materials_emissive_strength",
                                                         "KHR_materials_unlit", "KHR_mesh_quantization"};
   return std::find(kHonored.begin(), kHonored.end(), name) != kHonored.end();
 }
@@ -203,7 +219,8 @@ void check_rules(Report& report, const json& root, std::size_t bin_bytes, bool b
   RuleChecker checker(report, root);
   checker.check_object(root, root_rules(), "");
   if (auto errors = checker.take(); !errors.empty()) throw InputError(std::move(errors));
-  if (auto errors = check_ranges(report, root, bin_bytes, binary); !errors.empty()) throw InputError(std::move(errors));
+  if (auto errors = check_ranges(report, root, bin_bytes, binary); !errors.empty())
+    throw InputError(std::move(errors));
 }
 
 }  // namespace hwsim::pipeline::gltf

@@ -44,7 +44,8 @@ std::string percent_decoded(const std::string& uri) {
   return out;
 }
 
-// tinygltf would also look in the current directory: a scene must not depend on where the program was started.
+// tinygltf would also look in the current directory: a scene must not depend on where the program was
+// started.
 bool exists_in_folder(const std::string& path, void* user) {
   const auto& callbacks = *static_cast<const Callbacks*>(user);
   std::error_code error;
@@ -63,14 +64,17 @@ bool read_external(std::vector<unsigned char>* out, std::string* error, const st
   // glTF lets a buffer's file be longer than byteLength; tinygltf wants them equal.
   const std::string relative = path.substr(std::min(path.size(), callbacks.folder.size() + 1));
   const auto declared = callbacks.declared_bytes.find(relative);
-  if (declared != callbacks.declared_bytes.end() && declared->second < out->size()) out->resize(declared->second);
+  if (declared != callbacks.declared_bytes.end() && declared->second < out->size())
+    out->resize(declared->second);
   return true;
 }
 
-bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
+bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+  return false;
+}
 
-bool keep_image(tinygltf::Image*, const int index, std::string*, std::string*, int, int, const unsigned char* bytes,
-                int size, void* user) {
+bool keep_image(tinygltf::Image*, const int index, std::string*, std::string*, int, int,
+                const unsigned char* bytes, int size, void* user) {
   auto& images = static_cast<Callbacks*>(user)->images;
   const auto place = static_cast<std::size_t>(index);
   if (place < images.size() && size > 0) images[place].assign(bytes, bytes + size);
@@ -98,7 +102,8 @@ void parse(Report& report, const Container& c, Callbacks& callbacks, tinygltf::M
   bool parsed = false;
   try {
     const auto size = static_cast<unsigned>(c.bytes.size());
-    parsed = c.binary ? parser.LoadBinaryFromMemory(&model, &error, &warning, c.bytes.data(), size, callbacks.folder)
+    parsed = c.binary ? parser.LoadBinaryFromMemory(&model, &error, &warning, c.bytes.data(), size,
+                                                    callbacks.folder)
                       : parser.LoadASCIIFromString(&model, &error, &warning,
                                                    reinterpret_cast<const char*>(c.bytes.data()), size,
                                                    callbacks.folder);
@@ -107,19 +112,22 @@ void parse(Report& report, const Container& c, Callbacks& callbacks, tinygltf::M
   }
   if (parsed) return;
   const bool is_file = error.find("File ") != std::string::npos;
-  report.fail(is_file ? "S007" : "S004", "the glTF cannot be read: " + first_line(error),
-              is_file ? "a buffer's file must lie beside the .gltf file under the name that its uri gives" : "");
+  report.fail(
+      is_file ? "S007" : "S004", "the glTF cannot be read: " + first_line(error),
+      is_file ? "a buffer's file must lie beside the .gltf file under the name that its uri gives" : "");
 }
 
-// tinygltf lets a failed buffer pass with too few bytes in some paths; the ranges were checked against byteLength.
+// tinygltf lets a failed buffer pass with too few bytes in some paths; the ranges were checked against
+// byteLength.
 void check_buffers_complete(const Report& report, const json& root, const tinygltf::Model& model) {
   if (!root.contains("buffers")) return;
   for (std::size_t i = 0; i < root["buffers"].size(); ++i) {
     const double declared = root["buffers"][i]["byteLength"].get<double>();
     const double got = i < model.buffers.size() ? static_cast<double>(model.buffers[i].data.size()) : 0.0;
     if (got < declared)
-      report.fail("S007", element("buffers", i) + " holds " + std::to_string(static_cast<std::uint64_t>(got)) +
-                              " bytes, byteLength says " + std::to_string(static_cast<std::uint64_t>(declared)));
+      report.fail("S007", element("buffers", i) + " holds " +
+                              std::to_string(static_cast<std::uint64_t>(got)) + " bytes, byteLength says " +
+                              std::to_string(static_cast<std::uint64_t>(declared)));
   }
 }
 

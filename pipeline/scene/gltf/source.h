@@ -20,8 +20,8 @@ struct Source {
   std::string content_hash;
 };
 
-/// Everything that is checked without looking at vertices is right in the result: types, references, byte ranges.
-/// Throws InputError.
+/// Everything that is checked without looking at vertices is right in the result: types, references, byte
+/// ranges. Throws InputError.
 Source read_source(Report& report, const SceneLoadOptions& options);
 
 }  // namespace hwsim::pipeline::gltf

@@ -66,15 +66,16 @@ glm::vec4 orthogonal_tangent(const glm::vec3& normal, const glm::dvec3& directio
   const glm::dvec3 n(normal);
   glm::vec3 tangent;
   const glm::dvec3 projected = direction - n * glm::dot(n, direction);
-  if (glm::dot(projected, projected) <= 1e-12 * glm::dot(direction, direction) || !normalize_into(projected, tangent))
+  if (glm::dot(projected, projected) <= 1e-12 * glm::dot(direction, direction) ||
+      !normalize_into(projected, tangent))
     tangent = any_perpendicular(normal);
   return glm::vec4(tangent, handedness < 0.0 ? -1.0f : 1.0f);
 }
 
 // Old vertices without the attribute, new ones without it: neutral values, only if either side has it.
 template <class T>
-void append_attribute(std::vector<T>& to, const std::vector<T>& from, std::size_t old_count, std::size_t added,
-                      const T& neutral) {
+void append_attribute(std::vector<T>& to, const std::vector<T>& from, std::size_t old_count,
+                      std::size_t added, const T& neutral) {
   if (to.empty() && from.empty()) return;
   to.resize(old_count, neutral);
   to.insert(to.end(), from.begin(), from.end());
