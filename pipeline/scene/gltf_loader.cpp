@@ -61,7 +61,7 @@ void check_budget(const Report& report, const tinygltf::Model& model, const std:
         "the scene draws " + std::to_string(std::max(stored, drawn)) + " triangles, the limit is " + limit,
         "draw fewer instances, or reduce the meshes");
   // Three vertices a triangle are the most that any one triangle needs.
-  if (vertices > std::max<std::uint64_t>(3 * max_triangles, 3 * max_triangles / 3))
+  if (vertices / 3 > max_triangles)
     report.fail("S012", "the scene's primitives refer to " + std::to_string(vertices) +
                             " vertices, the limit is 3 x " + limit);
 }
