@@ -32,9 +32,9 @@ constexpr int kGeneratorVersion = 1;
 }
 
 std::string shown(double value) {
-  char text[32];
-  const auto end =
-      std::to_chars(text, text + sizeof text, value).ptr;  // the shortest text that reads back the same
+  char text[400];  // the largest double has 309 digits
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed)
+                       .ptr;  // the shortest text that reads back the same
   return {text, end};
 }
 
@@ -44,13 +44,11 @@ std::string joined(const std::vector<std::string>& names) {
   return out;
 }
 
-// The suggestion is part of the message too: a name on a command line has no line to underline.
 [[noreturn]] void fail_unknown(const std::string& code, const std::string& what, const std::string& name,
                                const std::vector<std::string>& candidates) {
   const std::string nearest = nearest_name(name, candidates);
   const std::string hint = nearest.empty() ? "" : "did you mean `" + nearest + "`?";
-  fail(code, "unknown " + what + " `" + name + "`" + (hint.empty() ? "" : "; " + hint), hint,
-       "known: " + joined(candidates));
+  fail(code, "unknown " + what + " `" + name + "`", hint, "known: " + joined(candidates));
 }
 
 const generate::Generator& find_generator(const std::string& name) {

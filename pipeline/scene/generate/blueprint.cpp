@@ -146,7 +146,7 @@ class GlbEncoder {
   }
 
   void add_nodes() {
-    json& nodes = root_["nodes"];
+    json nodes = json::array();
     for (const Placement& p : blueprint_.placements) {
       json node = {{"mesh", p.model}, {"translation", array_of(p.position)}};
       if (p.turn_rad != 0.0)
@@ -167,6 +167,7 @@ class GlbEncoder {
         json::array({{{"type", "directional"}, {"intensity", blueprint_.sun_lux}}});
     json list = json::array();
     for (std::size_t i = 0; i < nodes.size(); ++i) list.push_back(i);
+    root_["nodes"] = std::move(nodes);
     root_["scenes"] = json::array({{{"nodes", list}}});
   }
 

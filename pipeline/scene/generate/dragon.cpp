@@ -51,7 +51,7 @@ Blueprint make(const Parameters& p) {
            [&](double u, double v) { return body_point(body, u, v); });
   out.models.push_back(std::move(model));
   out.placements.push_back({});
-  out.eye = {0.4, 1.9, 4.6};
+  out.eye = {0.44, 2.02, 5.09};
   out.target = {0.0, 0.85, 0.0};
   out.fov_y_rad = 0.61;
   out.near_m = 0.05;

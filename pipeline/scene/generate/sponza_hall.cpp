@@ -175,11 +175,9 @@ Blueprint make(const Parameters& p) {
                {.name = "blue cloth", .color = {0.06, 0.12, 0.4}, .roughness = 0.9, .double_sided = true}};
   out.models = {shell_model(bays, detail), column_model(detail), arch_model(detail, kFloorHeight - 0.25),
                 arch_model(detail, kUpperHeight - 0.2), baluster_model(std::max(3, detail / 2))};
-  for (int i = 0; i < kCurtainModels; ++i) {
-    const int look =
-        kRedCloth + random.below(3);  // a statement each: the order of arguments' draws is unspecified
-    out.models.push_back(curtain_model(detail, look, random.uniform(0, 6)));
-  }
+  const int first_cloth = random.below(3);
+  for (int i = 0; i < kCurtainModels; ++i)
+    out.models.push_back(curtain_model(detail, kRedCloth + (first_cloth + i) % 3, random.uniform(0, 6)));
   out.placements.push_back({kShellModel, {}, 0.0});
   for (const double z : {-kCourtHalf, kCourtHalf}) place_side(out, random, bays, z, p.count("balusters"));
   out.eye = {1.2, 1.8, 0.8};

@@ -84,7 +84,7 @@ Blueprint make(const Parameters& p) {
   out.models.push_back(std::move(page));
   out.placements.push_back({});
   const double tilt = p.number("tilt_deg") * kPi / 180.0;
-  out.eye = {2.3 * exact_sin(tilt), 0.0, 2.3 * exact_cos(tilt)};
+  out.eye = {2.7 * exact_sin(tilt), 0.0, 2.7 * exact_cos(tilt)};
   out.fov_y_rad = 0.9;
   return out;
 }
