@@ -1,0 +1,15 @@
+#pragma once
+#include "pipeline/scene/scene.h"
+
+namespace hwsim::pipeline {
+
+/// A camera that sees the whole box from in front, above and to the right.
+Camera framing_camera(const glm::vec3& bounds_min, const glm::vec3& bounds_max);
+
+/// A far plane just behind the box, for cameras whose file gives none.
+float far_plane_m(const Camera& camera, const glm::vec3& bounds_min, const glm::vec3& bounds_max);
+
+/// A white sun that lights white to 1 and casts shadows, from the upper left in front.
+Light default_sun();
+
+}  // namespace hwsim::pipeline

@@ -1,0 +1,17 @@
+#include "pipeline/scene/generate/registry.h"
+
+#include <vector>
+
+namespace hwsim::pipeline::generate {
+
+std::span<const Generator> registry() {
+  static const std::vector<Generator> generators = {
+      // constant data; the only list a new generator joins
+      sponza_hall(), grass(), powerplant(), dragon(), wires(), text_page(),
+  };
+  return generators;
+}
+
+GeneratorParameter seed_parameter() { return {"seed", 1, 0, 4294967295.0, "seed of the random numbers"}; }
+
+}  // namespace hwsim::pipeline::generate

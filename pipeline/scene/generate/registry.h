@@ -1,0 +1,41 @@
+#pragma once
+#include <map>
+#include <span>
+#include <string>
+
+#include "pipeline/scene/generate/blueprint.h"
+#include "pipeline/scene/scene_source.h"
+
+namespace hwsim::pipeline::generate {
+
+/// Complete and inside their ranges: the registry's caller has checked them.
+class Parameters {
+ public:
+  explicit Parameters(std::map<std::string, double> values) : values_(std::move(values)) {}
+  double number(const char* name) const { return values_.at(name); }
+  int count(const char* name) const { return static_cast<int>(values_.at(name)); }
+  std::uint64_t seed() const { return static_cast<std::uint64_t>(values_.at("seed")); }
+
+ private:
+  std::map<std::string, double> values_;
+};
+
+struct Generator {
+  GeneratorInfo info;
+  Blueprint (*make)(const Parameters&);
+};
+
+// One function a generator, each in the file of its name.
+Generator sponza_hall();
+Generator grass();
+Generator powerplant();
+Generator dragon();
+Generator wires();
+Generator text_page();
+
+std::span<const Generator> registry();
+
+/// Every generator has it; whole, so that it survives the way through a double.
+GeneratorParameter seed_parameter();
+
+}  // namespace hwsim::pipeline::generate

@@ -1,0 +1,22 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace hwsim::pipeline::gltf {
+
+/// Two 64-bit FNV-1a sums over 8-byte little-endian words, from different bases, the second fed with
+/// byte-swapped words: a key for caches, not a defense against forgers. By words, since by bytes 4 GiB would
+/// take ten seconds.
+class ContentHash {
+ public:
+  void add(std::span<const std::uint8_t> bytes);
+  std::string hex() const;  ///< 32 digits
+
+ private:
+  void add_word(std::uint64_t word);
+  std::uint64_t a_ = 0xcbf29ce484222325u;
+  std::uint64_t b_ = 0x84222325cbf29ce4u;
+};
+
+}  // namespace hwsim::pipeline::gltf

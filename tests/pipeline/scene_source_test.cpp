@@ -1,0 +1,156 @@
+#include "pipeline/scene/scene_source.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "pipeline/scene/gltf/content_hash.h"
+#include "tests/pipeline/scene_glb.h"
+
+namespace hwsim::pipeline {
+namespace {
+using test::Bytes;
+using test::TemporaryFolder;
+
+Bytes bytes_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return Bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+}
+
+std::string code_of(const std::string& spec, const std::string& folder) {
+  try {
+    open_scene(spec, folder);
+    return "";
+  } catch (const InputError& e) {
+    return e.diagnostics().front().code;
+  }
+}
+
+TEST(SceneSource, EveryGeneratorLoadsWithoutWarnings) {
+  const TemporaryFolder folder("generators");
+  ASSERT_FALSE(generators().empty());
+  for (const GeneratorInfo& info : generators()) {
+    const Scene scene = open_scene(info.name, folder.path());
+    EXPECT_GT(stats(scene).drawn_triangles, 10000u) << info.name;
+    EXPECT_EQ(scene.name, info.name);
+    EXPECT_EQ(scene.cameras.at(0).name, "suggested") << info.name;
+    EXPECT_EQ(scene.lights.at(0).kind, LightKind::directional) << info.name;
+    for (const Diagnostic& d : scene.notes) EXPECT_EQ(d.code, "S118") << info.name << ": " << d.message;
+    EXPECT_TRUE(std::any_of(info.parameters.begin(), info.parameters.end(),
+                            [](const auto& p) { return p.name == "seed"; }));
+    for (const GeneratorParameter& p : info.parameters) {
+      EXPECT_LE(p.min, p.default_value);
+      EXPECT_LE(p.default_value, p.max);
+      EXPECT_FALSE(p.description.empty());
+    }
+  }
+}
+
+// The camera of every generator looks at the scene: the middle of some part is on the screen.
+TEST(SceneSource, CamerasSeeTheirScene) {
+  const TemporaryFolder folder("views");
+  for (const GeneratorInfo& info : generators()) {
+    const Scene scene = open_scene(info.name, folder.path());
+    const glm::mat4 clip = clip_from_view(scene.cameras[0], 16.0f / 9.0f) * scene.cameras[0].view_from_world;
+    std::uint64_t inside = 0, all = 0;
+    for (const Instance& instance : scene.instances)
+      for (const glm::vec3& p : scene.meshes[static_cast<std::size_t>(instance.mesh)].positions) {
+        const glm::vec4 c = clip * instance.world_from_local * glm::vec4(p, 1);
+        inside += std::abs(c.x) < c.w && std::abs(c.y) < c.w && c.z > 0 && c.z < c.w;
+        ++all;
+      }
+    EXPECT_GT(inside * 3, all) << info.name;
+  }
+}
+
+// Golden hashes: the bytes may depend on nothing but name and parameters, so a change here needs a new
+// kGeneratorVersion in scene_source.cpp.
+TEST(SceneSource, BytesAreTheSameOnEveryMachine) {
+  const TemporaryFolder folder("golden");
+  const std::vector<std::pair<std::string, std::string>> golden = {
+      {"dragon", "a841e676ec9b4dedec6587694b6c1493"},     {"grass", "ef015c72420f700f5b413b925fa6eb9f"},
+      {"powerplant", "3610ded91ecc752ded6604085f70e298"}, {"sponza_hall", "801b52a717b7bd84d0603c23ec2d23f8"},
+      {"text_page", "43f3e500d69210323dd28c0880eec4c9"},  {"wires", "c960dcdac7605797179a0883f69efefa"}};
+  for (const auto& [name, want] : golden) {
+    write_generated_scene(name, {}, folder.path() + "/a.glb");
+    gltf::ContentHash hash;
+    hash.add(bytes_of(folder.path() + "/a.glb"));
+    EXPECT_EQ(hash.hex(), want) << name;
+  }
+}
+
+TEST(SceneSource, SeedAndParametersChangeTheScene) {
+  const TemporaryFolder folder("seeds");
+  const Scene a = open_scene("grass:blades=1000,seed=1", folder.path());
+  const Scene b = open_scene("grass:seed=2,blades=1000", folder.path());
+  const Scene again = open_scene("grass:seed=1,blades=1000", folder.path());
+  EXPECT_NE(a.content_hash, b.content_hash);
+  EXPECT_EQ(a.content_hash, again.content_hash);
+  EXPECT_EQ(stats(a).drawn_triangles, 1000u + 16 * 16 * 2);
+}
+
+TEST(SceneSource, WiresCarryTheirRadius) {
+  const TemporaryFolder folder("wires");
+  const Scene scene = open_scene("wires:poles=3,wires=2,segments=4,sides=5,radius_m=0.02", folder.path());
+  const auto mesh =
+      std::find_if(scene.meshes.begin(), scene.meshes.end(), [](const Mesh& m) { return !m.radius.empty(); });
+  ASSERT_NE(mesh, scene.meshes.end());
+  EXPECT_EQ(mesh->positions.size(), 2u * 2 * 5 * 5);
+  ASSERT_EQ(mesh->tangents.size(), mesh->positions.size());
+  for (std::size_t i = 0; i < mesh->positions.size(); ++i) {
+    EXPECT_EQ(mesh->radius[i], 0.02f);
+    EXPECT_NEAR(glm::dot(mesh->normals[i], glm::vec3(mesh->tangents[i])), 0.0f, 1e-5f);
+  }
+}
+
+TEST(SceneSource, DragonHasAboutSixTrianglesACoveredPixel) {
+  const TemporaryFolder folder("dragon");
+  const Scene scene = open_scene("dragon", folder.path());
+  constexpr int kWidth = 1280, kHeight = 720;
+  const glm::mat4 clip = clip_from_view(scene.cameras[0], 16.0f / 9.0f) * scene.cameras[0].view_from_world;
+  // Triangles are smaller than pixels: a covered pixel has a vertex in it.
+  std::vector<bool> covered(kWidth * kHeight, false);
+  for (const glm::vec3& p : scene.meshes[0].positions) {
+    const glm::vec4 c = clip * glm::vec4(p, 1);
+    const float x = (c.x / c.w * 0.5f + 0.5f) * kWidth, y = (0.5f - c.y / c.w * 0.5f) * kHeight;
+    ASSERT_TRUE(x >= 0 && x < kWidth && y >= 0 && y < kHeight);
+    covered[static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)] = true;
+  }
+  const auto pixels = static_cast<double>(std::count(covered.begin(), covered.end(), true));
+  const double per_pixel = static_cast<double>(stats(scene).drawn_triangles) / pixels;
+  EXPECT_GT(per_pixel, 5.5);
+  EXPECT_LT(per_pixel, 6.8);
+}
+
+TEST(SceneSource, WrongSpecificationsAreErrorsWithTheNearestName) {
+  const TemporaryFolder folder("specs");
+  EXPECT_EQ(code_of("gras", folder.path()), "S201");
+  EXPECT_EQ(code_of("grass:blade=3", folder.path()), "S202");
+  EXPECT_EQ(code_of("grass:blades=0", folder.path()), "S203");
+  EXPECT_EQ(code_of("grass:blades=nan", folder.path()), "S203");
+  EXPECT_EQ(code_of("grass:blades", folder.path()), "S204");
+  EXPECT_EQ(code_of("grass:blades=3x", folder.path()), "S204");
+  EXPECT_EQ(code_of("grass:blades=3,blades=4", folder.path()), "S204");
+  EXPECT_EQ(code_of("none.glb", folder.path()), "S001");
+  EXPECT_EQ(code_of("grass:blades=5", folder.write("file", {1})), "S206");
+  try {
+    open_scene("gras", folder.path());
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.diagnostics().front().hint, "did you mean `grass`?");
+  }
+  EXPECT_THROW(write_generated_scene("grass", {{"blades", -1}}, folder.path() + "/x.glb"), InputError);
+}
+
+TEST(SceneSource, ADamagedCacheFileIsWrittenAnew) {
+  const TemporaryFolder folder("cache");
+  const std::string hash = open_scene("grass:blades=50", folder.path()).content_hash;
+  ASSERT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+  const std::string file = std::filesystem::directory_iterator(folder.path())->path().string();
+  std::filesystem::resize_file(file, 100);
+  EXPECT_EQ(open_scene("grass:blades=50", folder.path()).content_hash, hash);
+}
+
+}  // namespace
+}  // namespace hwsim::pipeline
