@@ -107,6 +107,7 @@ struct GpuValues {
 
   T pass_overhead_us{10.0};
   int queue_depth_chunks = 4;
+  int queue_slices_min = 64;
   T roofline_exponent{8.0};
 };
 
