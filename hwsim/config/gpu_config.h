@@ -1,5 +1,6 @@
 #pragma once
-// A GPU as files describe it. Rates are documented in docs/hardware_model.md; every key is declared in gpu_keys.h.
+// A GPU as files describe it. Rates are documented in docs/hardware_model.md; every key is declared in
+// gpu_keys.h.
 #include <array>
 #include <map>
 #include <optional>
@@ -67,7 +68,7 @@ struct GpuValues {
   T raster_tiles_per_engine_clk{1.0};
   T hiz_px_per_clk{0.0};
 
-  T zrop_samples_per_clk{0.0};
+  T zrop_samples_per_unit_clk{0.0};
   T zrop_efficiency_ratio{1.0};
   T export_px_per_clk{0.0};
   T export_64bit_ratio{0.5};
@@ -124,8 +125,9 @@ struct GpuConfig : GpuValues<double> {
 /// The GPU files of `config_dir`, without ".toml", sorted.
 std::vector<std::string> list_gpus(const std::string& config_dir);
 
-/// Base file, its `extends` chain, overlay files in order, then those of `sets` whose group is "gpu" (the others belong
-/// to other groups); then ranges and cross-field rules. `id_or_path` is an id in `config_dir` or a path ending in
+/// Base file, its `extends` chain, overlay files in order, then those of `sets` whose group is "gpu" (the
+/// others belong to other groups); then ranges and cross-field rules. `id_or_path` is an id in `config_dir`
+/// or a path ending in
 /// ".toml". Throws InputError with every problem found.
 GpuConfig load_gpu(const std::string& id_or_path, std::span<const std::string> overlays,
                    std::span<const Assignment> sets, const std::string& config_dir);
@@ -136,7 +138,8 @@ void validate(const GpuConfig& config);
 /// JSON Schema (draft 2020-12) of a GPU file, overlays included.
 std::string gpu_schema_json();
 
-/// Every key with its range, default and meaning, in file order; names are those of files ("features.float_atomics").
+/// Every key with its range, default and meaning, in file order; names are those of files
+/// ("features.float_atomics").
 std::vector<KeyInfo> gpu_keys();
 
 /// A complete TOML file that loads to the same numbers; with_origin adds a comment to each key.
@@ -148,7 +151,8 @@ std::string value_of(const GpuConfig& config, std::string_view key);
 /// 64-bit hash of everything that changes a prediction, as 16 hex digits; equal numbers give equal hashes.
 std::string content_hash(const GpuConfig& config);
 
-/// The same for what changes the functional emulator only (features and functional): part of a trace's cache key.
+/// The same for what changes the functional emulator only (features and functional): part of a trace's cache
+/// key.
 std::string functional_hash(const GpuConfig& config);
 
 /// Explanations for `hwsim help C012`.

@@ -1,7 +1,7 @@
 #pragma once
-// A setting is declared once, in the `describe` function of its struct: key with unit suffix, range, flags, meaning; the
-// default is the member's initializer. From that one line come the parser, the range check, the JSON schema, the list of
-// keys, the canonical text that is hashed and the sensitivity sweep.
+// A setting is declared once, in the `describe` function of its struct: key with unit suffix, range, flags,
+// meaning; the default is the member's initializer. From that one line come the parser, the range check, the
+// JSON schema, the list of keys, the canonical text that is hashed and the sensitivity sweep.
 #include <cstdint>
 #include <string>
 #include <string_view>

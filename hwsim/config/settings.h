@@ -10,7 +10,8 @@
 
 namespace hwsim {
 
-/// Applies those of `sets` whose group is `group` to `keys`, and appends what is wrong with them to `problems`.
+/// Applies those of `sets` whose group is `group` to `keys`, and appends what is wrong with them to
+/// `problems`.
 void apply_settings(std::string_view group, std::span<const Key> keys, std::span<const Assignment> sets,
                     std::vector<Diagnostic>& problems);
 

@@ -9,8 +9,8 @@ namespace hwsim {
 
 using TomlValue = std::variant<bool, std::int64_t, double, std::string>;
 
-/// A TOML scalar. Text that is no TOML value is taken as a bare string ("none", "agaa:c=2"); an array, a table, a date or
-/// an unfinished string is an InputError C021.
+/// A TOML scalar. Text that is no TOML value is taken as a bare string ("none", "agaa:c=2"); an array, a
+/// table, a date or an unfinished string is an InputError C021.
 TomlValue parse_toml_value(std::string_view text);
 
 /// `value` as TOML; reals in the shortest form that reads back to the same bits.
