@@ -13,6 +13,10 @@ target_compile_features(hwsim_options INTERFACE cxx_std_20)
 target_compile_options(hwsim_options INTERFACE -ffp-contract=off)
 if(PROJECT_IS_TOP_LEVEL)
   target_compile_options(hwsim_options INTERFACE -Wall -Wextra -Wconversion $<$<BOOL:${HWSIM_WERROR}>:-Werror>)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    # GCC bug 105651: "text" + std::string draws a false warning at -O3.
+    target_compile_options(hwsim_options INTERFACE -Wno-restrict)
+  endif()
 endif()
 target_compile_definitions(hwsim_options INTERFACE GLM_FORCE_DEPTH_ZERO_TO_ONE GLM_FORCE_RADIANS GLM_FORCE_XYZW_ONLY)
 # SSSE3 is left out of the dispatch: SSE4 serves every processor of the last 15 years.
