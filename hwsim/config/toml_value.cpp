@@ -3,8 +3,8 @@
 #include <toml++/toml.h>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <optional>
-#include <sstream>
 
 #include "hwsim/base/diagnostics.h"
 
@@ -35,10 +35,22 @@ std::optional<TomlValue> scalar_of(const toml::node& node) {
   return std::nullopt;
 }
 
+/// A basic string on one line.
 std::string quoted(std::string_view text) {
-  std::ostringstream out;
-  out << toml::value<std::string>(std::string(text));
-  return out.str();
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (has_control_character(std::string_view(&c, 1))) {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\u%04X", static_cast<unsigned>(static_cast<unsigned char>(c)));
+      out += code;
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
 }
 
 }  // namespace
