@@ -47,7 +47,9 @@ class Loader {
 
   void base(const std::string& id_or_path) {
     const auto path = find(id_or_path, "", {});
-    if (path) config_.id = file_with_parents(*path, Origin::Layer::file, {});
+    if (!path) return;
+    base_path_ = *path;
+    config_.id = file_with_parents(*path, Origin::Layer::file, {});
   }
 
   void overlay(const std::string& path) { read(path, "overlay", Origin::Layer::overlay); }
@@ -266,6 +268,7 @@ class Loader {
     Diagnostic d;
     d.code = "C015";
     d.message = "missing key `" + std::string(key.info.name) + "` in gpu \"" + config_.id + "\"";
+    d.place.file = base_path_;
     d.notes.push_back(std::string(key.info.name) + ": " + std::string(key.info.description));
     d.help = kSchemaHelp;
     problems_.push_back(std::move(d));
@@ -284,6 +287,7 @@ class Loader {
   }
 
   std::string config_dir_;
+  std::string base_path_;
   GpuConfig config_;
   std::vector<Key> keys_;  ///< slots point into config_
   std::map<std::string, Resolved, std::less<>> resolved_;

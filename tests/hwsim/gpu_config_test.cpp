@@ -165,7 +165,10 @@ TEST_F(GpuFiles, MissingKeysAreAllNamed) {
   std::size_t required = 0;
   for (const KeyInfo& info : gpu_keys()) required += info.has(kRequired) ? 1 : 0;
   EXPECT_EQ(errors.size(), required);
-  for (const Diagnostic& d : errors) EXPECT_EQ(d.code, "C015");
+  for (const Diagnostic& d : errors) {
+    EXPECT_EQ(d.code, "C015");
+    EXPECT_EQ(d.place.file, (dir_ / "empty.toml").string());
+  }
 }
 
 TEST_F(GpuFiles, UnknownGpuNamesTheNearest) {
