@@ -63,6 +63,7 @@ TEST(Msaa, CompressiblePixelsCostPixelRateAndOthersTheirSamples) {
   GpuConfig gpu = sample_gpu();
   EXPECT_NEAR(time_one(msaa_fill(1024, 1024), gpu).time_ns / (kManyChunks * 1024.0 / 28), 1.0, 0.01);
   EXPECT_NEAR(time_one(msaa_fill(1024, 0), gpu).time_ns / (kManyChunks * 4096.0 / 40), 1.0, 0.01);
+  EXPECT_NEAR(time_one(msaa_fill(1024, 512), gpu).time_ns / (kManyChunks * 2048.0 / 40), 1.0, 0.01);
   gpu.crop_compressible_at_pixel_rate = false;
   EXPECT_NEAR(time_one(msaa_fill(1024, 1024), gpu).time_ns / (kManyChunks * 4096.0 / 40), 1.0, 0.01);
 }
