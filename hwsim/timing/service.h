@@ -1,0 +1,177 @@
+#pragma once
+// How long each unit would need for a chunk alone (docs/hardware_model.md, "Service times").
+#include "hwsim/timing/traffic.h"
+
+namespace hwsim {
+
+template <class T>
+struct ChunkCost {
+  std::array<T, kUnitCount> ns;
+  StreamBytesOf<T> dram;
+  ChunkCost() { ns.fill(T(0.0)); }
+};
+
+struct IssuedOps {
+  double alu = 0.0, sfu = 0.0;
+};
+
+/// Lane operations with idle lanes, for the GPU's subgroups.
+IssuedOps issued_ops(const ShaderCounters& shader, int subgroup_size);
+
+template <class T>
+T fe_ns(const PassCounters& c, const GpuRates<T>& r) {
+  return static_cast<double>(c.fe.draws) * r.draw_ns +
+         static_cast<double>(c.fe.state_changes) * r.state_change_ns;
+}
+
+/// Culling and setup are stages of one pipe: the slower one sets the pace.
+template <class T>
+T setup_ns(const PassCounters& c, const GpuRates<T>& r) {
+  return larger(T(static_cast<double>(c.setup.in_primitives) * r.culled_triangle_ns),
+                T(static_cast<double>(c.setup.out_primitives) * r.drawn_triangle_ns));
+}
+
+/// Pixels are charged by whole quads (small triangles), and at least once where all samples failed the depth
+/// test.
+template <class T>
+T raster_ns(const PassCounters& c, const PassWork& pass, const GpuRates<T>& r) {
+  const auto samples = static_cast<double>(c.raster.covered_samples);
+  const double px =
+      std::max(4.0 * static_cast<double>(c.raster.quads), samples / std::max(1, pass.raster_samples));
+  const T by_px = larger(T(px * r.raster_px_ns), T(samples * r.raster_sample_ns));
+  return larger(by_px, T(static_cast<double>(c.raster.visited_tiles) * r.raster_tile_ns));
+}
+
+template <class T>
+T zrop_ns(const PassCounters& c, const GpuRates<T>& r) {
+  const std::uint64_t tested = c.zrop.early_z_tested_samples + c.zrop.late_z_tested_samples;
+  return static_cast<double>(std::max(tested, c.zrop.written_samples)) * r.zrop_sample_ns;
+}
+
+/// Vertex shading alone.
+template <class T>
+T vs_ns(const PassCounters& c, const GpuRates<T>& r) {
+  return larger(T(static_cast<double>(c.vs.alu_lane_ops) * r.alu_lane_op_ns),
+                T(static_cast<double>(c.vs.sfu_lane_ops) * r.sfu_lane_op_ns));
+}
+
+/// All that the cores run in the chunk, vertex shading included: pipes run side by side, the fullest sets the
+/// pace.
+template <class T>
+T shader_ns(const PassCounters& c, const GpuRates<T>& r) {
+  const IssuedOps issued = issued_ops(c.shader, r.subgroup_size);
+  T alu = (static_cast<double>(c.vs.alu_lane_ops) + issued.alu) * r.alu_lane_op_ns;
+  T sfu = (static_cast<double>(c.vs.sfu_lane_ops) + issued.sfu) * r.sfu_lane_op_ns;
+  const T interp = static_cast<double>(c.shader.interp_lane_ops) * r.interp_scalar_ns;
+  (r.interp_on_alu ? alu : sfu) += interp;
+  const T words = static_cast<double>(c.shader.load_lane_ops + c.shader.store_lane_ops) * r.memory_word_ns;
+  const T group = static_cast<double>(c.shader.group_memory_lane_ops) * r.group_memory_word_ns;
+  const T atomics = static_cast<double>(c.shader.atomic_lane_ops) * r.atomic_ns;
+  return larger(larger(larger(alu, sfu), larger(words, group)), atomics);
+}
+
+/// Cost of a probe against 32-bit texels, linear in the bytes a texel between the tabulated 4, 8 and 16.
+template <class T>
+T probe_cost(double bytes_per_texel, const GpuRates<T>& r) {
+  if (bytes_per_texel <= 4.0) return T(1.0);
+  if (bytes_per_texel <= 8.0) return 1.0 + (r.probe_64bit_cost - 1.0) * ((bytes_per_texel - 4.0) / 4.0);
+  const double part = std::min(1.0, (bytes_per_texel - 8.0) / 8.0);
+  return r.probe_64bit_cost + (r.probe_128bit_cost - r.probe_64bit_cost) * part;
+}
+
+template <class T>
+T tex_ns(const PassCounters& c, const T& l1_fill_bytes, const GpuRates<T>& r) {
+  const double bytes =
+      c.tex.texels == 0 ? 4.0
+                        : static_cast<double>(c.mem.texture_read_bytes) / static_cast<double>(c.tex.texels);
+  const T probes = static_cast<double>(c.tex.bilinear_probes) * r.bilinear_probe_ns * probe_cost(bytes, r);
+  return larger(probes, T(l1_fill_bytes * r.l1_fill_byte_ns));
+}
+
+/// gpus section 5: rop time = max(pixels / pixel rate, uncompressed samples / sample rate), summed over the
+/// targets.
+template <class T>
+T crop_ns(const PassCounters& c, const PassWork& pass, const GpuRates<T>& r) {
+  double all_samples = 0.0;
+  for (const ColorTargetWork& target : pass.color_targets) all_samples += target.samples;
+  const auto targets = static_cast<double>(pass.color_targets.size());
+  T sum(0.0);
+  for (const ColorTargetWork& target : pass.color_targets) {
+    const auto k = static_cast<std::size_t>(info(target.format).rate_class);
+    if (k >= static_cast<std::size_t>(RateClass::depth)) continue;
+    const double px = static_cast<double>(c.crop.exported_fragments) / targets;
+    const bool blended = target.blended && c.crop.blended_samples > 0;
+    const T& px_ns = blended ? r.blended_px_ns[k] : r.color_px_ns[k];
+    T cost = px * px_ns;
+    if (target.samples > 1) {
+      const double written = static_cast<double>(c.crop.written_samples) * target.samples / all_samples;
+      const double single = static_cast<double>(c.crop.single_color_fragments) / targets * target.samples;
+      const double samples = r.crop_compressible_at_pixel_rate ? std::max(0.0, written - single) : written;
+      cost = larger(cost, T(samples * r.color_sample_ns[k] * (px_ns / r.color_px_ns[k])));
+    }
+    sum += cost;
+  }
+  return sum;
+}
+
+template <class T>
+T resolve_ns(const PassCounters& c, const PassWork& pass, const GpuRates<T>& r) {
+  const T read = static_cast<double>(c.resolve.read_samples) * r.resolve_sample_ns;
+  if (pass.color_targets.empty()) return read;
+  const auto k = static_cast<std::size_t>(info(pass.color_targets.front().format).rate_class);
+  if (k >= static_cast<std::size_t>(RateClass::depth)) return read;
+  return larger(read, T(static_cast<double>(c.resolve.written_pixels) * r.color_px_ns[k]));
+}
+
+template <class T>
+ChunkCost<T> chunk_cost(const PassCounters& c, const PassWork& pass, const PassShape& shape,
+                        const TrafficModel<T>& model, const GpuRates<T>& r) {
+  const ChunkTraffic<T> traffic = chunk_traffic(c, shape, model, r);
+  ChunkCost<T> cost;
+  cost.dram = traffic.dram;
+  const auto set = [&cost](Unit unit, const T& ns) { cost.ns[at(unit)] = ns; };
+  set(Unit::fe, fe_ns(c, r));
+  set(Unit::ia, static_cast<double>(c.stats.input_assembly_vertices) * r.index_ns);
+  set(Unit::vs, vs_ns(c, r));
+  set(Unit::setup, setup_ns(c, r));
+  set(Unit::raster, raster_ns(c, pass, r));
+  set(Unit::hiz, static_cast<double>(c.hiz.tested_tiles) * kTilePixels * r.hiz_px_ns);
+  set(Unit::zrop, zrop_ns(c, r));
+  set(Unit::shader, shader_ns(c, r));
+  set(Unit::tex, tex_ns(c, traffic.l1_fill_bytes, r));
+  set(Unit::crop, crop_ns(c, pass, r));
+  set(Unit::resolve, resolve_ns(c, pass, r));
+  set(Unit::l2, traffic.l2_bytes * r.l2_byte_ns);
+  set(Unit::dram, traffic.dram.total() * r.dram_byte_ns);
+  return cost;
+}
+
+/// A clear, whole: table bytes where the GPU has fast clear, every sample otherwise.
+template <class T>
+ChunkCost<T> clear_cost(const PassWork& pass, const GpuRates<T>& r) {
+  const double tiles =
+      static_cast<double>((pass.width_px + 7) / 8) * static_cast<double>((pass.height_px + 7) / 8);
+  const double px = static_cast<double>(pass.width_px) * static_cast<double>(pass.height_px);
+  ChunkCost<T> cost;
+  const auto write = [&cost](Stream stream, const T& bytes) { cost.dram.write[at(stream)] += bytes; };
+  for (const ColorTargetWork& target : pass.color_targets) {
+    const auto k = static_cast<std::size_t>(info(target.format).rate_class);
+    if (r.fast_clear_color) {
+      write(Stream::other, tiles * r.clear_color_tile_bytes);
+    } else if (k < static_cast<std::size_t>(RateClass::depth)) {
+      write(Stream::color, T(px * target.samples * info(target.format).bytes));
+      cost.ns[at(Unit::crop)] +=
+          larger(T(px * r.color_px_ns[k]), T(px * target.samples * r.color_sample_ns[k]));
+    }
+  }
+  if (pass.depth_format != Format::none && r.fast_clear_depth) {
+    write(Stream::other, tiles * r.clear_depth_tile_bytes);
+  } else if (pass.depth_format != Format::none) {
+    write(Stream::depth, T(px * pass.depth_samples * info(pass.depth_format).bytes));
+    cost.ns[at(Unit::zrop)] += px * pass.depth_samples * r.zrop_sample_ns;
+  }
+  cost.ns[at(Unit::dram)] = cost.dram.total() * r.dram_byte_ns;
+  return cost;
+}
+
+}  // namespace hwsim

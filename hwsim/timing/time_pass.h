@@ -1,0 +1,114 @@
+#pragma once
+// The engines: chunks' costs to the time of a pass. T is double to predict, a Jet to fit.
+#include <cmath>
+
+#include "hwsim/timing/service.h"
+#include "hwsim/timing/tandem_queue.h"
+
+namespace hwsim {
+
+template <class T>
+struct PassTime {
+  T time_ns{0.0};
+  T overhead_ns{0.0};
+  std::array<T, kUnitCount> busy_ns, stack_ns;
+  StreamBytesOf<T> dram;
+  PassTime() {
+    busy_ns.fill(T(0.0));
+    stack_ns.fill(T(0.0));
+  }
+};
+
+template <class T>
+std::vector<ChunkCost<T>> chunk_costs(const PassWork& pass, const GpuRates<T>& rates) {
+  std::vector<ChunkCost<T>> costs;
+  if (pass.kind == PassKind::clear) {
+    costs.push_back(clear_cost(pass, rates));
+    costs.front().ns[at(Unit::fe)] = fe_ns(total(pass), rates);
+    return costs;
+  }
+  const PassShape shape = shape_of(pass);
+  const TrafficModel<T> model = model_traffic(shape, pass, rates);
+  costs.reserve(pass.chunks.size());
+  for (const PassCounters& chunk : pass.chunks) costs.push_back(chunk_cost(chunk, pass, shape, model, rates));
+  return costs;
+}
+
+/// Shaders' share of the time, split between vertex and pixel work: they run on the same cores.
+template <class T>
+void split_shader_stack(PassTime<T>& time) {
+  T& shader = time.stack_ns[at(Unit::shader)];
+  const T& busy = time.busy_ns[at(Unit::shader)];
+  if (!(busy > T(0.0))) return;
+  const T vertex = shader * smaller(T(1.0), T(time.busy_ns[at(Unit::vs)] / busy));
+  time.stack_ns[at(Unit::vs)] += vertex;
+  shader -= vertex;
+}
+
+/// Smooth maximum: the p-norm of the units' totals, at least the largest of them. A unit's share is its part
+/// of the sum.
+template <class T>
+void roofline_time(PassTime<T>& time, const GpuRates<T>& rates) {
+  using std::pow;
+  T peak(0.0);
+  for (const T& busy : time.busy_ns) peak = larger(peak, busy);
+  if (!(peak > T(0.0))) return;
+  std::array<T, kUnitCount> powers;
+  T sum(0.0);
+  for (std::size_t u = 0; u < kUnitCount; ++u) {
+    const bool idle = !(time.busy_ns[u] > T(0.0));  // pow of a Jet has no derivative at zero
+    powers[u] = idle ? T(0.0) : T(pow(T(time.busy_ns[u] / peak), rates.roofline_exponent));
+    sum += powers[u];
+  }
+  time.time_ns = peak * pow(sum, T(1.0 / rates.roofline_exponent));
+  for (std::size_t u = 0; u < kUnitCount; ++u) time.stack_ns[u] = time.time_ns * powers[u] / sum;
+}
+
+/// The queue engine's input: units without work in this pass are bypassed, and a pass of few chunks is cut
+/// into slices, because units work on the parts of a chunk at the same time.
+template <class T>
+ServiceTable<T> service_table(const std::vector<ChunkCost<T>>& costs, const std::vector<std::size_t>& units,
+                              int slices_min) {
+  const std::size_t slices = (static_cast<std::size_t>(slices_min) + costs.size() - 1) / costs.size();
+  ServiceTable<T> table{units.size(), costs.size() * slices, {}};
+  table.ns.reserve(table.units * table.chunks);
+  for (const ChunkCost<T>& cost : costs)
+    for (std::size_t slice = 0; slice < slices; ++slice)
+      for (const std::size_t u : units) table.ns.push_back(cost.ns[u] / static_cast<double>(slices));
+  return table;
+}
+
+template <class T>
+void queue_time(PassTime<T>& time, const std::vector<ChunkCost<T>>& costs, const GpuRates<T>& rates) {
+  std::vector<std::size_t> units;
+  for (std::size_t u = 0; u < kUnitCount; ++u)
+    if (time.busy_ns[u] > T(0.0)) units.push_back(u);
+  if (units.empty()) return;
+  const ServiceTable<T> table = service_table(costs, units, rates.queue_slices_min);
+  const QueueResult<T> result =
+      TandemQueue<T>(table, static_cast<std::size_t>(rates.queue_depth_chunks)).run();
+  time.time_ns = result.makespan_ns;
+  for (std::size_t i = 0; i < units.size(); ++i) time.stack_ns[units[i]] = result.critical_ns[i];
+}
+
+/// `waits`: the pass begins after everything before it has drained, and pays for that.
+template <class T>
+PassTime<T> time_pass(const PassWork& pass, const GpuRates<T>& rates, Engine engine, bool waits) {
+  const std::vector<ChunkCost<T>> costs = chunk_costs(pass, rates);
+  PassTime<T> time;
+  for (const ChunkCost<T>& cost : costs) {
+    for (std::size_t u = 0; u < kUnitCount; ++u) time.busy_ns[u] += cost.ns[u];
+    time.dram += cost.dram;
+  }
+  if (engine == Engine::roofline)
+    roofline_time(time, rates);
+  else
+    queue_time(time, costs, rates);
+  split_shader_stack(time);
+  if (waits) time.overhead_ns = rates.pass_overhead_ns;
+  time.time_ns += time.overhead_ns;
+  time.stack_ns[at(Unit::fe)] += time.overhead_ns;
+  return time;
+}
+
+}  // namespace hwsim
