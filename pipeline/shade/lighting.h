@@ -7,6 +7,7 @@
 
 #include "pipeline/scene/scene.h"
 #include "pipeline/shade/codec.h"
+#include "pipeline/shade/transcendental.h"
 #include "pipeline/shade/vec.h"
 
 namespace hwsim::pipeline {
