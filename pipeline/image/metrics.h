@@ -1,5 +1,6 @@
 #pragma once
-// Errors of an image against a reference of the same size. Both linear; compared as a viewer sees them (sRGB, [0,1]).
+// Errors of an image against a reference of the same size. Both linear; compared as a viewer sees them (sRGB,
+// [0,1]).
 #include "pipeline/image/image.h"
 
 namespace hwsim::pipeline {
@@ -11,10 +12,12 @@ struct ImageError {
   double flip_mean = 0.0, flip_median = 0.0, flip_p99 = 0.0;  ///< LDR FLIP (Andersson et al. 2020), 0..1
 };
 
-/// Throws std::invalid_argument when sizes differ. `flip_map` (optional) receives the per-pixel FLIP error in r.
+/// Throws std::invalid_argument when sizes differ. `flip_map` (optional) receives the per-pixel FLIP error in
+/// r.
 ImageError compare(const Image& test, const Image& reference, Image* flip_map = nullptr);
 
-/// The magma color map on values in [0,1], for error and heat maps. Linear, so that write_image shows the map's colors.
+/// The magma color map on values in [0,1], for error and heat maps. Linear, so that write_image shows the
+/// map's colors.
 glm::vec3 magma(float value);
 
 }  // namespace hwsim::pipeline
