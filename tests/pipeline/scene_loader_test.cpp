@@ -271,6 +271,14 @@ TEST_F(SceneLoader, LimitsAreCheckedBeforeMemoryIsTaken) {
   options = {};
   options.max_file_bytes = 100;
   EXPECT_EQ(error_code(glb, options), "S012");
+  auto copies = test::square_glb();  // 3 x 2^24 vertices from no bytes at all
+  copies.root["accessors"].push_back({{"componentType", 5126}, {"count", 1 << 24}, {"type", "VEC3"}});
+  for (int i = 0; i < 3; ++i) {
+    copies.root["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", 3}}}}}}});
+    copies.root["nodes"].push_back({{"mesh", i + 1}});
+    copies.root["scenes"][0]["nodes"].push_back(i + 1);
+  }
+  EXPECT_EQ(error_code(copies), "S012");
   auto zeros = test::square_glb();  // all zeros by definition, and no byte of the file
   zeros.root["accessors"][0].erase("bufferView");
   zeros.root["accessors"][0]["count"] = 4000000000u;

@@ -93,6 +93,22 @@ TEST(SceneTexture, ImagesComeWithSamplersColorSpaceAndTangents) {
   }
 }
 
+TEST(SceneTexture, GeneratedTangentsCopyOnlyTheVerticesInUse) {
+  const test::TemporaryFolder folder("own_copies");
+  auto glb = textured_square();
+  auto second = glb.primitive();
+  second["indices"] = glb.add_accessor<std::uint16_t>({2, 1, 3}, 5123, "SCALAR", 1);
+  glb.root["meshes"][0]["primitives"].push_back(second);
+  const Scene scene = load_gltf(folder.write("scene.glb", glb.bytes()));
+  const Mesh& mesh = scene.meshes[0];
+  EXPECT_EQ(mesh.positions.size(), 4u + 3u);
+  EXPECT_EQ(mesh.tangents.size(), mesh.positions.size());
+  const std::uint32_t* last = &mesh.indices[6];
+  EXPECT_EQ(mesh.positions[last[0]], glm::vec3(0, 1, 0));
+  EXPECT_EQ(mesh.positions[last[1]], glm::vec3(1, 0, 0));
+  EXPECT_EQ(mesh.positions[last[2]], glm::vec3(1, 1, 0));
+}
+
 TEST(SceneTexture, AnImageThatIsNoneIsAnError) {
   const test::TemporaryFolder folder("broken_image");
   auto glb = textured_square();

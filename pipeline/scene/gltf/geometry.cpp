@@ -138,21 +138,24 @@ class MeshBuilder {
     return append(vertices, where);
   }
 
-  // Exporters often write one set of vertices for many primitives: it is kept once.
+  // Exporters often write one set of vertices for many primitives: it is kept once, unless tangents are
+  // generated, which depend on the primitive's triangles; then each keeps a copy of the vertices that it
+  // uses.
   std::uint32_t add_shared(const tinygltf::Primitive& primitive, const std::string& where, const Needs& needs,
-                           const std::vector<std::uint32_t>& indices) {
-    std::string key = std::to_string(needs.uv0) + std::to_string(needs.uv1) + std::to_string(needs.tangents) +
-                      std::to_string(needs.tangent_uv_set);
+                           std::vector<std::uint32_t>& indices) {
+    const bool own_copy = needs.tangents && attribute(primitive, "TANGENT") < 0;
+    std::string key = std::to_string(needs.uv0) + std::to_string(needs.uv1) + std::to_string(needs.tangents);
     for (const auto& [name, accessor] : primitive.attributes)
       key += ' ' + name + ' ' + std::to_string(accessor);
-    const bool per_primitive = needs.tangents && attribute(primitive, "TANGENT") < 0;
-    if (const auto found = base_of_.find(key); found != base_of_.end() && !per_primitive)
-      return found->second;
+    if (const auto found = base_of_.find(key); found != base_of_.end() && !own_copy) return found->second;
     Vertices vertices = read_vertices(primitive, where, needs);
+    if (own_copy) keep_used(vertices, indices);
     if (const std::size_t wrong = repair_normals(vertices, indices); wrong > 0)
       report_.warn("S107", "normals that are not of unit length were normalized", where);
     finish_tangents(vertices, indices, where, needs);
-    return base_of_[key] = append(vertices, where);
+    const std::uint32_t base = append(vertices, where);
+    if (!own_copy) base_of_[key] = base;
+    return base;
   }
 
   std::uint32_t append(const Vertices& vertices, const std::string& where) {

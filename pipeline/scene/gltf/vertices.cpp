@@ -27,6 +27,16 @@ void gather(std::vector<T>& values, const std::vector<std::uint32_t>& indices) {
   values = std::move(out);
 }
 
+void gather_all(Vertices& v, const std::vector<std::uint32_t>& indices) {
+  gather(v.positions, indices);
+  gather(v.normals, indices);
+  gather(v.tangents, indices);
+  gather(v.colors, indices);
+  gather(v.uv0, indices);
+  gather(v.uv1, indices);
+  gather(v.radius, indices);
+}
+
 glm::vec3 any_perpendicular(const glm::vec3& normal) {
   const glm::vec3 axis = std::abs(normal.x) < 0.6f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
   return glm::normalize(glm::cross(normal, axis));
@@ -88,14 +98,23 @@ void split_flat(Vertices& v, std::vector<std::uint32_t>& indices) {
   std::vector<glm::vec3> normals(indices.size(), glm::vec3(0, 1, 0));
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
     if (normalize_into(face_normal(v, &indices[i]), normals[i])) normals[i + 1] = normals[i + 2] = normals[i];
-  gather(v.positions, indices);
-  gather(v.colors, indices);
-  gather(v.uv0, indices);
-  gather(v.uv1, indices);
-  gather(v.radius, indices);
-  v.normals = std::move(normals);
   v.tangents.clear();
+  gather_all(v, indices);
+  v.normals = std::move(normals);
   for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<std::uint32_t>(i);
+}
+
+void keep_used(Vertices& v, std::vector<std::uint32_t>& indices) {
+  constexpr std::uint32_t kUnused = 0xffffffffu;
+  std::vector<std::uint32_t> place(v.positions.size(), kUnused), used;
+  for (const std::uint32_t index : indices) place[index] = 0;
+  for (std::uint32_t i = 0; i < place.size(); ++i) {
+    if (place[i] == kUnused) continue;
+    place[i] = static_cast<std::uint32_t>(used.size());
+    used.push_back(i);
+  }
+  gather_all(v, used);
+  for (std::uint32_t& index : indices) index = place[index];
 }
 
 std::size_t repair_normals(Vertices& v, const std::vector<std::uint32_t>& indices) {

@@ -20,6 +20,9 @@ struct Vertices {
 /// Tangents are dropped (glTF: to be ignored then); `indices` become 0, 1, 2, ...
 void split_flat(Vertices& vertices, std::vector<std::uint32_t>& indices);
 
+/// Drops the vertices that no index refers to; the others keep their order.
+void keep_used(Vertices& vertices, std::vector<std::uint32_t>& indices);
+
 /// Replaces normals of length zero by the mean of the faces around (or +y) and scales the others to length
 /// one. Returns how many were not of unit length (more than 1 % off).
 std::size_t repair_normals(Vertices& vertices, const std::vector<std::uint32_t>& indices);
