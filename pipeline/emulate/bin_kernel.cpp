@@ -21,6 +21,8 @@ HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
 inline constexpr SamplePosition kPixelCenter{};
+/// From this many quads of one triangle on, a tile is shaded in place; fewer are gathered with those of other tiles.
+inline constexpr int kTileQuads = 5;
 
 class BinRunner {
  public:
@@ -150,7 +152,7 @@ class BinRunner {
     }
     std::uint64_t tested = 0;
     for (int s = 0; s < samples_; ++s) tested += popcount(masks[s]);
-    test_tile(t, x, y, coarse, masks, n);
+    test_tile(&t, x, y, coarse, masks, n);
     std::uint64_t passed = 0;
     for (int s = 0; s < samples_; ++s) passed += popcount(masks[s]);
     n.zrop.early_z_tested_samples += tested;
@@ -171,9 +173,10 @@ class BinRunner {
     }
   }
 
-  void test_tile(const RasterTriangle& t, int x, int y, CoarseResult coarse, std::uint64_t* masks, PassCounters& n) {
+  void test_tile(const RasterTriangle* t, int x, int y, CoarseResult coarse, std::uint64_t* masks, PassCounters& n) {
     const PipelineState& state = *w_.state;
     const int block = c_.depth->block_index(x, y);
+    c_.depth->use(block);
     touch_tile(*c_.depth, block, w_.current_chunk, n.zrop);
     std::uint64_t before_depth[kMaxSamples];
     if (state.stencil.test) {
@@ -185,10 +188,10 @@ class BinRunner {
     const bool known = coarse == CoarseResult::accepted && state.depth.test && c_.skip.accepted_tiles;
     if (known && !write) {
       w_.accepted_tiles_skipped += 1;
-    } else if (state.depth.test || write) {
+    } else if (t != nullptr && (state.depth.test || write)) {  // full-screen passes test stencil alone
       const TileDepth tile{c_.depth->block(block), &c_.depth->depth_min[static_cast<std::size_t>(block)],
                            &c_.depth->depth_max[static_cast<std::size_t>(block)], c_.depth_scale};
-      fine_test(compare, write, t, x, y, c_.positions, tile, masks);
+      fine_test(compare, write, *t, x, y, c_.positions, tile, masks);
     }
     if (state.stencil.test)
       update_stencil(state.stencil, samples_, c_.depth->stencil_block(block), before_depth, masks);
@@ -206,6 +209,7 @@ class BinRunner {
     if (c_.depth != nullptr && w_.state->stencil.test && !w_.late_z) {
       const auto tested = static_cast<std::uint64_t>(samples_) * popcount(inside);
       const int block = c_.depth->block_index(x, y);
+      c_.depth->use(block);
       touch_tile(*c_.depth, block, w_.current_chunk, n.zrop);
       test_stencil(w_.state->stencil, samples_, c_.depth->stencil_block(block), masks);
       update_stencil(w_.state->stencil, samples_, c_.depth->stencil_block(block), masks, masks);
@@ -226,6 +230,11 @@ class BinRunner {
     for (int s = 0; s < samples_; ++s) any_sample |= masks[s];
     n.raster.fragments += popcount(any_sample);
     const int block = tile_number(x, y);
+    if (quads_of(any_sample) >= kTileQuads) {
+      if (holds_tile(block)) flush();
+      shade_tile(t, segment, item, x, y, block, any_sample, masks, n);
+      return;
+    }
     for (int quad = 0; quad < kQuadsPerBlock; ++quad) {
       const auto lanes = static_cast<std::uint32_t>(any_sample >> (4 * quad)) & 15u;
       if (lanes == 0) continue;
@@ -235,6 +244,146 @@ class BinRunner {
       append_quad(t, segment, item, x, y, block, quad, masks);
       if (w_.batch.quad_count == kBatchQuads) flush();
     }
+  }
+
+  static std::uint64_t quad_lanes(std::uint64_t lanes) {  // every lane of a quad that has one
+    const std::uint64_t low = (lanes | lanes >> 1 | lanes >> 2 | lanes >> 3) & 0x1111111111111111ull;
+    return low * 15;
+  }
+  static int quads_of(std::uint64_t lanes) { return __builtin_popcountll(quad_lanes(lanes)) / 4; }
+
+  /// Shades and writes one triangle's part of a tile at once: every register holds neighboring quads of one triangle,
+  /// and texels are stored a register at a time.
+  void shade_tile(const RasterTriangle* t, const Segment* segment, const GeometryItem* item, int x, int y, int block,
+                  std::uint64_t any_sample, const std::uint64_t* masks, PassCounters& n) {
+    const std::uint64_t quads = quad_lanes(any_sample);
+    const auto quad_count = static_cast<std::uint64_t>(__builtin_popcountll(quads)) / 4;
+    // Quads with all four lanes: a lane is missing where `any_sample` has a hole.
+    const std::uint64_t holes = quads & ~any_sample;
+    n.raster.quads += quad_count;
+    n.raster.partial_quads += static_cast<std::uint64_t>(quads_of(holes));
+    FragmentBatch& batch = w_.sample_batch;
+    start_tile(batch, t, segment, item, x, y);
+    std::uint64_t kept[kMaxSamples];
+    std::memcpy(kept, masks, sizeof(std::uint64_t) * static_cast<std::size_t>(samples_));
+    set_lane_coverage(batch, masks);
+    if (w_.state->raster.sample_rate && samples_ > 1) {
+      for (int s = 0; s < samples_; ++s) shade_tile_sample(batch, block, x, y, s, kept);
+      return;
+    }
+    batch.sample_index = -1;
+    batch.active_lanes = any_sample;
+    batch.valid_lanes = quads;
+    const AttributeLocation location =
+        w_.state->raster.centroid ? AttributeLocation::centroid : AttributeLocation::center;
+    set_up_tile(batch, x, y, location, c_.positions, 0);
+    shade(batch, false);
+    for (int s = 0; s < samples_; ++s) kept[s] &= ~batch.discarded_lanes;
+    if (w_.late_z) test_tile_late(t, x, y, kept, 0, samples_);
+    write_tile(batch, block, kept, 0, samples_);
+  }
+
+  void shade_tile_sample(FragmentBatch& batch, int block, int x, int y, int s, std::uint64_t* kept) {
+    if (kept[s] == 0) return;
+    batch.sample_index = s;
+    batch.active_lanes = kept[s];
+    batch.valid_lanes = quad_lanes(kept[s]);
+    set_up_tile(batch, x, y, AttributeLocation::sample, c_.positions, s);
+    shade(batch, true);
+    kept[s] &= ~batch.discarded_lanes;
+    if (w_.late_z) test_tile_late(batch.triangle[0], x, y, kept, s, s + 1);
+    write_tile(batch, block, kept, s, s + 1);
+  }
+
+  void start_tile(FragmentBatch& batch, const RasterTriangle* t, const Segment* segment, const GeometryItem* item, int x,
+                  int y) {
+    batch.material = w_.batch.material;
+    batch.resources = w_.batch.resources;
+    batch.texture_tracker = w_.batch.texture_tracker;
+    batch.quad_count = kBatchQuads;
+    batch.triangle.fill(t);
+    for (int quad = 0; quad < kQuadsPerBlock; ++quad) {
+      batch.quad_x[static_cast<std::size_t>(quad)] = x + lane_x(4 * quad);
+      batch.quad_y[static_cast<std::size_t>(quad)] = y + lane_y(4 * quad);
+    }
+    if (t == nullptr) return;
+    batch.primitive.fill(t->primitive);
+    batch.front_facing.fill(t->front_facing != w_.draw->mirrored);
+    const auto stride = static_cast<std::uint32_t>(w_.draw->batch->vertex->varying_scalars);
+    for (std::size_t v = 0; v < 3; ++v) batch.varyings[v].fill(varyings_of(t->vertex[v], stride, *segment, *item));
+  }
+
+  void set_lane_coverage(FragmentBatch& batch, const std::uint64_t* masks) const {
+    for (int first = 0; first < kBlockLanes; first += kVectorLanes) {
+      LaneI bits(0);
+      for (int s = 0; s < samples_; ++s)
+        bits = bits | select(mask_from_bits(masks[s], first), LaneI(static_cast<std::int32_t>(1u << s)), LaneI(0));
+      store(bits, reinterpret_cast<std::int32_t*>(batch.coverage.data()) + first);
+    }
+  }
+
+  void test_tile_late(const RasterTriangle* t, int x, int y, std::uint64_t* masks, int first_sample, int last_sample) {
+    PassCounters& n = w_.counters();
+    std::uint64_t only[kMaxSamples] = {};
+    std::uint64_t tested = 0, passed = 0;
+    for (int s = first_sample; s < last_sample; ++s) {
+      only[s] = masks[s];
+      tested += popcount(masks[s]);
+    }
+    if (tested == 0) return;
+    test_tile(t, x, y, CoarseResult::ambiguous, only, n);
+    for (int s = first_sample; s < last_sample; ++s) {
+      masks[s] = only[s];
+      passed += popcount(only[s]);
+    }
+    n.zrop.late_z_tested_samples += tested;
+    n.zrop.late_z_killed_samples += tested - passed;
+    count_depth_traffic(tested, passed, n);
+  }
+
+  void write_tile(const FragmentBatch& batch, int block, const std::uint64_t* masks, int first_sample, int last_sample) {
+    for (std::size_t target = 0; target < c_.color.size(); ++target) {
+      const BlendState state = target < w_.state->blend.size() ? w_.state->blend[target] : BlendState{};
+      if (state.write_mask == 0) continue;
+      GpuImage& image = *c_.color[target];
+      image.use(block);
+      EncodedBatch texels;
+      const bool reads = state.enabled || state.write_mask != 0xf;
+      if (!reads) encode_batch(image.format, batch.color[target], image.words, kBatchLanes, texels);
+      std::uint64_t written = 0, any_lane = 0, every_sample = ~std::uint64_t{0};
+      for (int s = first_sample; s < last_sample; ++s) {
+        any_lane |= masks[s];
+        every_sample &= masks[s];
+        written += popcount(masks[s]);
+        if (masks[s] == 0) continue;
+        if (reads) blend_tile(image, state, batch.color[target], block, s, texels);
+        store_tile(image, block, s, masks[s], texels);
+      }
+      if (any_lane == 0) continue;
+      const bool all_samples = last_sample - first_sample == samples_;
+      count_color(image, block, popcount(any_lane), all_samples ? popcount(every_sample) : 0, written, reads);
+    }
+  }
+
+  void count_color(GpuImage& image, int block, std::uint64_t fragments, std::uint64_t single_color, std::uint64_t written,
+                   bool reads) {
+    PassCounters& n = w_.counters();
+    touch_tile(image, block, w_.current_chunk, n.crop);
+    const auto bytes = static_cast<std::uint64_t>(info(image.format).bytes);
+    n.crop.exported_fragments += fragments;
+    n.crop.single_color_fragments += single_color;
+    n.crop.written_samples += written;
+    n.mem.color_write_bytes += written * bytes;
+    if (reads) {
+      n.crop.blended_samples += written;
+      n.mem.color_read_bytes += written * bytes;
+    }
+  }
+
+  bool holds_tile(int block) const {
+    for (std::size_t q = 0; q < static_cast<std::size_t>(w_.batch.quad_count); ++q)
+      if (w_.block[q] == block) return true;
+    return false;
   }
 
   /// The number of the tile in targets of the pass's size.
@@ -280,6 +429,7 @@ class BinRunner {
         active |= static_cast<std::uint64_t>(batch.coverage[static_cast<std::size_t>(lane)] != 0) << lane;
     }
     batch.active_lanes = active;
+    batch.valid_lanes = quads == kBatchQuads ? ~std::uint64_t{0} : (std::uint64_t{1} << (4 * quads)) - 1;
     if (w_.state->raster.sample_rate && samples_ > 1) {
       for (int s = 0; s < samples_; ++s) shade_sample(s);
       if (w_.late_z) refresh_bounds();
@@ -320,6 +470,8 @@ class BinRunner {
       part.quad_count++;
     }
     if (part.quad_count == 0) return;
+    part.valid_lanes =
+        part.quad_count == kBatchQuads ? ~std::uint64_t{0} : (std::uint64_t{1} << (4 * part.quad_count)) - 1;
     part.material = batch.material;
     part.resources = batch.resources;
     part.texture_tracker = batch.texture_tracker;
@@ -403,6 +555,7 @@ class BinRunner {
         const auto x = hn::Add(hn::Load(d, kQuadX), hn::Set(d, x0)), y = hn::Add(hn::Load(d, kQuadY), hn::Set(d, y0));
         hn::Store(plane_at(t->z, x, y), d, values);
       }
+      c_.depth->use(w_.block[q]);
       touch_tile(*c_.depth, w_.block[q], w_.current_chunk, n.zrop);
       mask = test_quad(state, q, s, values, mask);
       passed += popcount(mask);
@@ -477,6 +630,7 @@ class BinRunner {
       const BlendState state = target < w_.state->blend.size() ? w_.state->blend[target] : BlendState{};
       if (state.write_mask == 0) continue;
       GpuImage& image = *c_.color[target];
+      for (int q = 0; q < to.count; ++q) image.use(block[q]);
       EncodedBatch texels;
       const bool reads = state.enabled || state.write_mask != 0xf;
       if (!reads) encode_batch(image.format, batch.color[target], image.words, 4 * batch.quad_count, texels);
@@ -484,7 +638,7 @@ class BinRunner {
         if (reads) blend_batch(image, state, batch.color[target], to, s, texels);
         write_sample(image, to, batch.sample_index >= 0, s, texels);
       }
-      count_color(image, to, batch.sample_index >= 0, first_sample, last_sample, reads);
+      count_quads(image, to, batch.sample_index >= 0, first_sample, last_sample, reads);
     }
   }
 
@@ -502,12 +656,10 @@ class BinRunner {
     }
   }
 
-  void count_color(GpuImage& image, const WriteTargets& to, bool of_sample_batch, int first_sample, int last_sample,
+  void count_quads(GpuImage& image, const WriteTargets& to, bool of_sample_batch, int first_sample, int last_sample,
                    bool reads) {
-    PassCounters& n = w_.counters();
-    std::uint64_t written = 0;
-    int last_block = -1;
     for (int q = 0; q < to.count; ++q) {
+      std::uint64_t written = 0;
       std::uint8_t lanes = 0, all = 15;
       for (int s = first_sample; s < last_sample; ++s) {
         const std::uint8_t mask = sample_mask(q, of_sample_batch, s);
@@ -516,17 +668,8 @@ class BinRunner {
         all &= mask;
       }
       if (lanes == 0) continue;
-      n.crop.exported_fragments += popcount(lanes);
-      if (last_sample - first_sample == samples_) n.crop.single_color_fragments += popcount(all);
-      if (to.block[q] != last_block) touch_tile(image, to.block[q], w_.current_chunk, n.crop);
-      last_block = to.block[q];
-    }
-    const auto bytes = static_cast<std::uint64_t>(info(image.format).bytes);
-    n.crop.written_samples += written;
-    n.mem.color_write_bytes += written * bytes;
-    if (reads) {
-      n.crop.blended_samples += written;
-      n.mem.color_read_bytes += written * bytes;
+      const bool all_samples = last_sample - first_sample == samples_;
+      count_color(image, to.block[q], popcount(lanes), all_samples ? popcount(all) : 0, written, reads);
     }
   }
 

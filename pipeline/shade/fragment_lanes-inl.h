@@ -48,9 +48,7 @@ class FragmentLanes {
 
   FragmentLanes(FragmentBatch& batch, int first_lane)
       : batch_(batch), first_(first_lane),
-        valid_(mask_from_bits(batch.quad_count == kBatchQuads ? ~std::uint64_t{0}
-                                                              : (std::uint64_t{1} << (4 * batch.quad_count)) - 1,
-                              first_lane)),
+        valid_(mask_from_bits(batch.valid_lanes, first_lane)),
         active_(mask_from_bits(batch.active_lanes, first_lane)) {
     const int quads = batch.quad_count;
     const int first_quad = first_lane / 4;
@@ -179,8 +177,9 @@ class FragmentLanes {
 template <class Shader>
 void run_fragment_shader(FragmentBatch& batch, const void* uniforms) {
   const auto& typed = *static_cast<const typename Shader::Uniforms*>(uniforms);
-  const int lanes = 4 * batch.quad_count;
-  for (int first = 0; first < lanes; first += kVectorLanes) {
+  constexpr std::uint64_t kRegister = kVectorLanes == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << kVectorLanes) - 1;
+  for (int first = 0; first < kBatchLanes; first += kVectorLanes) {
+    if ((batch.valid_lanes >> first & kRegister) == 0) continue;
     FragmentLanes s(batch, first);
     Shader::run(s, typed);
   }
