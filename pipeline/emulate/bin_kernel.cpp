@@ -89,7 +89,7 @@ class BinRunner {
     TileCoverage coverage(t, conservative ? std::span(&kPixelCenter, 1) : c_.positions, c_.sample_min_x, c_.sample_min_y, c_.sample_max_x, c_.sample_max_y);
     const int left = std::max<int>(t.min_x, bin_x_) & ~7, right = std::min<int>(t.max_x, bin_x_ + kBinPx - 1);
     const int top = std::max<int>(t.min_y, bin_y_) & ~7, bottom = std::min<int>(t.max_y, bin_y_ + kBinPx - 1);
-    std::uint64_t masks[kMaxSamples];
+    SampleMasks masks;
     for (int y = top; y <= bottom; y += kBlockPx) {
       for (int x = left; x <= right; x += kBlockPx) {
         if (!coverage.reaches(x, y)) continue;
@@ -118,22 +118,20 @@ class BinRunner {
     return result;
   }
 
-  bool cover(TileCoverage& coverage, int x, int y, std::uint64_t* masks, PassCounters& n) {
+  bool cover(TileCoverage& coverage, int x, int y, SampleMasks& masks, PassCounters& n) {
     if (coverage.covers_whole_tile()) {
-      for (int s = 0; s < samples_; ++s) masks[s] = ~std::uint64_t{0};
+      masks.start();
+      for (int s = 0; s < samples_; ++s) masks.set(static_cast<std::size_t>(s), ~std::uint64_t{0});
     } else {
       coverage.masks(masks);
+      if (w_.state->raster.conservative) {  // a touched pixel counts as covered at all of its samples
+        masks.start();
+        for (int s = 0; s < samples_; ++s) masks.set(static_cast<std::size_t>(s), masks.lanes[0]);
+      }
     }
-    if (x + kBlockPx > c_.width || y + kBlockPx > c_.height) {
-      const std::uint64_t inside = lanes_inside(x, y);
-      for (int s = 0; s < samples_; ++s) masks[s] &= inside;
-    }
-    if (w_.state->raster.conservative)  // a touched pixel counts as covered at all of its samples
-      for (int s = 1; s < samples_; ++s) masks[s] = masks[0];
-    std::uint64_t covered = 0;
-    for (int s = 0; s < samples_; ++s) covered += static_cast<std::uint64_t>(__builtin_popcountll(masks[s]));
-    n.raster.covered_samples += covered;
-    return covered != 0;
+    if (x + kBlockPx > c_.width || y + kBlockPx > c_.height) masks.keep(lanes_inside(x, y), 0, samples_, samples_);
+    n.raster.covered_samples += masks.count;
+    return masks.count != 0;
   }
 
   std::uint64_t lanes_inside(int x, int y) const {
@@ -144,21 +142,18 @@ class BinRunner {
   }
 
   /// Stencil and depth before shading; false when no sample is left.
-  bool test_early(const RasterTriangle& t, int x, int y, CoarseResult coarse, std::uint64_t* masks, PassCounters& n) {
+  bool test_early(const RasterTriangle& t, int x, int y, CoarseResult coarse, SampleMasks& masks, PassCounters& n) {
     const PipelineState& state = *w_.state;
     if (c_.depth == nullptr || !(state.depth.test || state.stencil.test || state.depth.write)) {
-      for (int s = 0; s < samples_; ++s) n.stats.samples_passed += popcount(masks[s]);
+      n.stats.samples_passed += masks.count;
       return true;
     }
-    std::uint64_t tested = 0;
-    for (int s = 0; s < samples_; ++s) tested += popcount(masks[s]);
+    const std::uint64_t tested = masks.count;
     test_tile(&t, x, y, coarse, masks, n);
-    std::uint64_t passed = 0;
-    for (int s = 0; s < samples_; ++s) passed += popcount(masks[s]);
     n.zrop.early_z_tested_samples += tested;
-    n.zrop.early_z_killed_samples += tested - passed;
-    count_depth_traffic(tested, passed, n);
-    return passed != 0;
+    n.zrop.early_z_killed_samples += tested - masks.count;
+    count_depth_traffic(tested, masks.count, n);
+    return masks.count != 0;
   }
 
   void count_depth_traffic(std::uint64_t tested, std::uint64_t passed, PassCounters& n) const {
@@ -173,15 +168,16 @@ class BinRunner {
     }
   }
 
-  void test_tile(const RasterTriangle* t, int x, int y, CoarseResult coarse, std::uint64_t* masks, PassCounters& n) {
+  void test_tile(const RasterTriangle* t, int x, int y, CoarseResult coarse, SampleMasks& masks, PassCounters& n) {
     const PipelineState& state = *w_.state;
     const int block = c_.depth->block_index(x, y);
     c_.depth->use(block);
     touch_tile(*c_.depth, block, w_.current_chunk, n.zrop);
     std::uint64_t before_depth[kMaxSamples];
     if (state.stencil.test) {
-      test_stencil(state.stencil, samples_, c_.depth->stencil_block(block), masks);
-      std::memcpy(before_depth, masks, sizeof(std::uint64_t) * static_cast<std::size_t>(samples_));
+      test_stencil(state.stencil, samples_, c_.depth->stencil_block(block), masks.lanes);
+      masks.keep(~std::uint64_t{0}, 0, samples_, samples_);
+      std::memcpy(before_depth, masks.lanes, sizeof(std::uint64_t) * static_cast<std::size_t>(samples_));
     }
     const Compare compare = state.depth.test ? state.depth.compare : Compare::always;
     const bool write = state.depth.write;
@@ -194,45 +190,39 @@ class BinRunner {
       fine_test(compare, write, *t, x, y, c_.positions, tile, masks);
     }
     if (state.stencil.test)
-      update_stencil(state.stencil, samples_, c_.depth->stencil_block(block), before_depth, masks);
+      update_stencil(state.stencil, samples_, c_.depth->stencil_block(block), before_depth, masks.lanes);
   }
 
   static std::uint64_t popcount(std::uint64_t bits) { return static_cast<std::uint64_t>(__builtin_popcountll(bits)); }
 
   void full_screen_tile(int x, int y) {
-    std::uint64_t masks[kMaxSamples];
+    SampleMasks masks;
+    masks.start();
     const std::uint64_t inside = lanes_inside(x, y);
+    for (int s = 0; s < samples_; ++s) masks.set(static_cast<std::size_t>(s), inside);
     PassCounters& n = w_.counters();
     n.raster.visited_tiles += 1;
-    for (int s = 0; s < samples_; ++s) masks[s] = inside;
-    n.raster.covered_samples += static_cast<std::uint64_t>(samples_) * popcount(inside);
+    n.raster.covered_samples += masks.count;
     if (c_.depth != nullptr && w_.state->stencil.test && !w_.late_z) {
-      const auto tested = static_cast<std::uint64_t>(samples_) * popcount(inside);
-      const int block = c_.depth->block_index(x, y);
-      c_.depth->use(block);
-      touch_tile(*c_.depth, block, w_.current_chunk, n.zrop);
-      test_stencil(w_.state->stencil, samples_, c_.depth->stencil_block(block), masks);
-      update_stencil(w_.state->stencil, samples_, c_.depth->stencil_block(block), masks, masks);
-      std::uint64_t passed = 0;
-      for (int s = 0; s < samples_; ++s) passed += popcount(masks[s]);
+      const std::uint64_t tested = masks.count;
+      test_tile(nullptr, x, y, CoarseResult::ambiguous, masks, n);
       n.zrop.early_z_tested_samples += tested;
-      n.zrop.early_z_killed_samples += tested - passed;
-      count_depth_traffic(tested, passed, n);
+      n.zrop.early_z_killed_samples += tested - masks.count;
+      count_depth_traffic(tested, masks.count, n);
     } else if (!w_.late_z) {
-      n.stats.samples_passed += static_cast<std::uint64_t>(samples_) * popcount(inside);
+      n.stats.samples_passed += masks.count;
     }
     append_tile(nullptr, nullptr, nullptr, x, y, masks, n);
   }
 
   void append_tile(const RasterTriangle* t, const Segment* segment, const GeometryItem* item, int x, int y,
-                   const std::uint64_t* masks, PassCounters& n) {
-    std::uint64_t any_sample = 0;
-    for (int s = 0; s < samples_; ++s) any_sample |= masks[s];
+                   const SampleMasks& masks, PassCounters& n) {
+    const std::uint64_t any_sample = masks.any_lane;
     n.raster.fragments += popcount(any_sample);
     const int block = tile_number(x, y);
     if (quads_of(any_sample) >= kTileQuads) {
       if (holds_tile(block)) flush();
-      shade_tile(t, segment, item, x, y, block, any_sample, masks, n);
+      shade_tile(t, segment, item, x, y, block, masks, n);
       return;
     }
     for (int quad = 0; quad < kQuadsPerBlock; ++quad) {
@@ -241,7 +231,7 @@ class BinRunner {
       n.raster.quads += 1;
       n.raster.partial_quads += lanes != 15 ? 1 : 0;
       if (ordered_ && holds(block, quad)) flush();
-      append_quad(t, segment, item, x, y, block, quad, masks);
+      append_quad(t, segment, item, x, y, block, quad, masks.lanes);
       if (w_.batch.quad_count == kBatchQuads) flush();
     }
   }
@@ -255,44 +245,43 @@ class BinRunner {
   /// Shades and writes one triangle's part of a tile at once: every register holds neighboring quads of one triangle,
   /// and texels are stored a register at a time.
   void shade_tile(const RasterTriangle* t, const Segment* segment, const GeometryItem* item, int x, int y, int block,
-                  std::uint64_t any_sample, const std::uint64_t* masks, PassCounters& n) {
-    const std::uint64_t quads = quad_lanes(any_sample);
-    const auto quad_count = static_cast<std::uint64_t>(__builtin_popcountll(quads)) / 4;
-    // Quads with all four lanes: a lane is missing where `any_sample` has a hole.
-    const std::uint64_t holes = quads & ~any_sample;
-    n.raster.quads += quad_count;
-    n.raster.partial_quads += static_cast<std::uint64_t>(quads_of(holes));
+                  const SampleMasks& masks, PassCounters& n) {
+    const std::uint64_t quads = quad_lanes(masks.any_lane);
+    n.raster.quads += static_cast<std::uint64_t>(quads_of(quads));
+    n.raster.partial_quads += static_cast<std::uint64_t>(quads_of(quads & ~masks.any_lane));
     FragmentBatch& batch = w_.sample_batch;
     start_tile(batch, t, segment, item, x, y);
-    std::uint64_t kept[kMaxSamples];
-    std::memcpy(kept, masks, sizeof(std::uint64_t) * static_cast<std::size_t>(samples_));
-    set_lane_coverage(batch, masks);
+    set_lane_coverage(batch, masks.lanes);
+    SampleMasks kept = masks;
     if (w_.state->raster.sample_rate && samples_ > 1) {
-      for (int s = 0; s < samples_; ++s) shade_tile_sample(batch, block, x, y, s, kept);
+      for (int s = 0; s < samples_; ++s) {
+        kept = masks;
+        if (masks.lanes[s] != 0) shade_tile_sample(batch, block, x, y, s, kept);
+      }
       return;
     }
     batch.sample_index = -1;
-    batch.active_lanes = any_sample;
+    batch.active_lanes = masks.any_lane;
     batch.valid_lanes = quads;
-    const AttributeLocation location =
-        w_.state->raster.centroid ? AttributeLocation::centroid : AttributeLocation::center;
-    set_up_tile(batch, x, y, location, c_.positions, 0);
+    set_up_tile(batch, x, y, w_.state->raster.centroid ? AttributeLocation::centroid : AttributeLocation::center,
+                c_.positions, 0);
     shade(batch, false);
-    for (int s = 0; s < samples_; ++s) kept[s] &= ~batch.discarded_lanes;
-    if (w_.late_z) test_tile_late(t, x, y, kept, 0, samples_);
-    write_tile(batch, block, kept, 0, samples_);
+    add_tile_heat(batch, x, y);
+    if (batch.discarded_lanes != 0) kept.keep(~batch.discarded_lanes, 0, samples_, samples_);
+    if (w_.late_z) test_tile_late(t, x, y, kept);
+    write_tile(batch, block, kept.lanes, 0, samples_);
   }
 
-  void shade_tile_sample(FragmentBatch& batch, int block, int x, int y, int s, std::uint64_t* kept) {
-    if (kept[s] == 0) return;
+  void shade_tile_sample(FragmentBatch& batch, int block, int x, int y, int s, SampleMasks& kept) {
     batch.sample_index = s;
-    batch.active_lanes = kept[s];
-    batch.valid_lanes = quad_lanes(kept[s]);
+    batch.active_lanes = kept.lanes[s];
+    batch.valid_lanes = quad_lanes(kept.lanes[s]);
     set_up_tile(batch, x, y, AttributeLocation::sample, c_.positions, s);
     shade(batch, true);
-    kept[s] &= ~batch.discarded_lanes;
-    if (w_.late_z) test_tile_late(batch.triangle[0], x, y, kept, s, s + 1);
-    write_tile(batch, block, kept, s, s + 1);
+    add_tile_heat(batch, x, y);
+    kept.keep(~batch.discarded_lanes, s, s + 1, samples_);
+    if (w_.late_z) test_tile_late(batch.triangle[0], x, y, kept);
+    write_tile(batch, block, kept.lanes, s, s + 1);
   }
 
   void start_tile(FragmentBatch& batch, const RasterTriangle* t, const Segment* segment, const GeometryItem* item, int x,
@@ -322,23 +311,14 @@ class BinRunner {
     }
   }
 
-  void test_tile_late(const RasterTriangle* t, int x, int y, std::uint64_t* masks, int first_sample, int last_sample) {
-    PassCounters& n = w_.counters();
-    std::uint64_t only[kMaxSamples] = {};
-    std::uint64_t tested = 0, passed = 0;
-    for (int s = first_sample; s < last_sample; ++s) {
-      only[s] = masks[s];
-      tested += popcount(masks[s]);
-    }
+  void test_tile_late(const RasterTriangle* t, int x, int y, SampleMasks& masks) {
+    const std::uint64_t tested = masks.count;
     if (tested == 0) return;
-    test_tile(t, x, y, CoarseResult::ambiguous, only, n);
-    for (int s = first_sample; s < last_sample; ++s) {
-      masks[s] = only[s];
-      passed += popcount(only[s]);
-    }
+    PassCounters& n = w_.counters();
+    test_tile(t, x, y, CoarseResult::ambiguous, masks, n);
     n.zrop.late_z_tested_samples += tested;
-    n.zrop.late_z_killed_samples += tested - passed;
-    count_depth_traffic(tested, passed, n);
+    n.zrop.late_z_killed_samples += tested - masks.count;
+    count_depth_traffic(tested, masks.count, n);
   }
 
   void write_tile(const FragmentBatch& batch, int block, const std::uint64_t* masks, int first_sample, int last_sample) {
@@ -445,6 +425,7 @@ class BinRunner {
         w_.state->raster.centroid ? AttributeLocation::centroid : AttributeLocation::center;
     for (int q = 0; q < batch.quad_count; ++q) set_up_quad(batch, q, location, c_.positions, 0);
     shade(batch, false);
+    add_heat(batch);
     if (batch.discarded_lanes != 0) drop_discarded(batch.discarded_lanes);
     if (w_.late_z) test_late();
     write_color(batch, w_.block.data(), w_.quad_in_block.data(), 0, samples_);
@@ -478,6 +459,7 @@ class BinRunner {
     part.sample_index = s;
     for (int q = 0; q < part.quad_count; ++q) set_up_quad(part, q, AttributeLocation::sample, c_.positions, s);
     shade(part, true);
+    add_heat(part);
     drop_discarded_sample(part, s);
     write_color(part, block, quad_in_block, s, s + 1);
   }
@@ -505,10 +487,19 @@ class BinRunner {
     PassCounters& n = w_.counters();
     account_shading(batch, *w_.program, sample_rate, n);
     n.tex.touched_lines += w_.texture_tracker.missed_lines - lines_before;
-    if (c_.heat != nullptr) add_heat(batch);
+  }
+
+  /// add_heat for a tile in place: lanes of the tile are lanes of the heat image.
+  void add_tile_heat(const FragmentBatch& batch, int x, int y) const {
+    if (c_.heat == nullptr || c_.heat_shift != 0) return add_heat(batch);
+    const std::uint64_t active = batch.active_lanes;
+    auto* heat = reinterpret_cast<std::int32_t*>(c_.heat) + ((y >> 3) * c_.heat_blocks_x + (x >> 3)) * kBlockLanes;
+    for (int first = 0; first < kBlockLanes; first += kVectorLanes)
+      store(load(heat + first) + select(mask_from_bits(active, first), LaneI(1), LaneI(0)), heat + first);
   }
 
   void add_heat(const FragmentBatch& batch) const {
+    if (c_.heat == nullptr) return;
     for (std::uint64_t lanes = batch.active_lanes; lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<std::size_t>(__builtin_ctzll(lanes));
       const int x = batch.pixel_x[lane] >> c_.heat_shift, y = batch.pixel_y[lane] >> c_.heat_shift;
