@@ -221,7 +221,7 @@ class FrameRunner {
     std::uint64_t triangles = 0;
     for (DrawInfo& draw : c.draws) {
       draw.first_primitive = static_cast<std::uint32_t>(triangles);
-      triangles += draw.triangle_count();
+      triangles += draw.primitive_count();
     }
     c.chunk_primitives = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(triangles / 256, 32, 4096));
     start_workers(std::max<std::uint64_t>(1, (triangles + c.chunk_primitives - 1) / c.chunk_primitives), c);
@@ -230,7 +230,7 @@ class FrameRunner {
     std::uint32_t first = 0;
     while (first < c.draws.size()) {
       std::uint32_t last = first;
-      for (std::uint64_t n = 0; last < c.draws.size() && n < kSegmentTriangles; ++last) n += c.draws[last].triangle_count();
+      for (std::uint64_t n = 0; last < c.draws.size() && n < kSegmentTriangles; ++last) n += c.draws[last].primitive_count();
       Segment segment = make_segment(c, first, last);
       skipped_draws_ += run_geometry(c, segment, geometry, workers_);
       parallel_for(static_cast<std::size_t>(c.bins_x * c.bins_y), options_.jobs, [&](std::size_t bin, int worker) {
