@@ -104,6 +104,13 @@ HWY_INLINE std::uint32_t mask_bits(LaneM m) {
   __builtin_memcpy(&bits, bytes, sizeof(bits));
   return bits;
 }
+/// body(value) for the lanes of `bits`, in order.
+template <class Body>
+HWY_INLINE void for_each_lane(LaneI a, std::uint32_t bits, Body&& body) {
+  HWY_ALIGN std::int32_t values[kVectorLanes];
+  store(a, values);
+  for (; bits != 0; bits &= bits - 1) body(values[__builtin_ctz(bits)]);
+}
 /// Lane i of the mask is bit (first_lane + i) of `bits`.
 HWY_INLINE LaneM mask_from_bits(std::uint64_t bits, int first_lane) {
   const std::uint64_t shifted = bits >> first_lane;
