@@ -4,7 +4,7 @@
 #include "pipeline/emulate/fragment_batch.h"
 #include "pipeline/shade/codec.h"
 #include "pipeline/shade/lanes-inl.h"
-#include "pipeline/shade/texture_sampler-inl.h"
+#include "pipeline/shade/texture_sampler.h"
 
 #if defined(HWSIM_SHADE_FRAGMENT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_SHADE_FRAGMENT_LANES_INL_H_
@@ -83,7 +83,7 @@ class FragmentLanes {
 
   /// Filtered texture at attribute scalars (k, k + 1); level of detail from the derivatives at pixel centers.
   Vec4<F> sample_texture(const TextureView* texture, int k) {
-    const TextureSampler sampler(*texture, batch_.texture_tracker, valid_);
+    const TextureSampler<F, I, M> sampler(*texture, batch_.texture_tracker, valid_);
     const F uc = interpolate(k, batch_.b1_center.data(), batch_.b2_center.data());
     const F vc = interpolate(k + 1, batch_.b1_center.data(), batch_.b2_center.data());
     return sampler.sample(attr(k), attr(k + 1), ddx(uc), ddx(vc), ddy(uc), ddy(vc), batch_.tex_bilinear_probes);

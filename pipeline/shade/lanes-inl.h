@@ -118,6 +118,14 @@ HWY_INLINE LaneM mask_from_bits(std::uint64_t bits, int first_lane) {
 }
 #endif
 
+/// body(value) for the lanes of `bits`, in order.
+template <class Body>
+HWY_INLINE void for_each_lane(LaneI a, std::uint32_t bits, Body&& body) {
+  HWY_ALIGN std::int32_t values[kVectorLanes];
+  store(a, values);
+  for (; bits != 0; bits &= bits - 1) body(values[__builtin_ctz(bits)]);
+}
+
 // Coarse derivatives: one value for a quad, from its top left lane's neighbors.
 HWY_INLINE LaneF ddx(LaneF a) { return LaneF(hn::Sub(hn::Broadcast<1>(a.v), hn::Broadcast<0>(a.v))); }
 HWY_INLINE LaneF ddy(LaneF a) { return LaneF(hn::Sub(hn::Broadcast<2>(a.v), hn::Broadcast<0>(a.v))); }
