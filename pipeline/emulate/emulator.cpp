@@ -37,7 +37,9 @@ class FrameRunner {
       if (options_.progress) options_.progress(static_cast<double>(position) / static_cast<double>(compiled_.order.size()), pass.name);
       allocate(static_cast<int>(position));
       PassWork work = describe(pass, compiled_.barrier_before[position] != 0);
+      const auto start = std::chrono::steady_clock::now();
       run_pass(pass, work);
+      result.pass_wall_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
       result.trace.passes.push_back(std::move(work));
       release(static_cast<int>(position));
     }

@@ -29,6 +29,7 @@ struct Emulation {
   Image shading_heat;          ///< r: fragment shader invocations of each pixel, all passes
   std::map<std::string, std::uint64_t> skipped;  ///< by switch: how often it applied
   double wall_s = 0.0;
+  std::vector<double> pass_wall_s;  ///< of the trace's passes, memory allocation left out
 };
 
 /// Throws InputError when the graph is not valid for this GPU.

@@ -1,0 +1,11 @@
+#pragma once
+#include "pipeline/shade/program.h"
+
+namespace hwsim::benchmarks {
+
+/// Color = the three varyings of gouraud_vertex_program, interpolated: the cheapest shaded pass.
+const pipeline::FragmentProgram& gouraud_program();
+/// Positions, and normals passed on as colors.
+const pipeline::VertexProgram& gouraud_vertex_program();
+
+}  // namespace hwsim::benchmarks
