@@ -133,7 +133,7 @@ class SampleFrame {
   }
 
   pipeline::Pass& draw(const std::string& name, std::vector<pipeline::DrawBatch> batches, bool with_color = true) {
-    pipeline::Pass& pass = graph.add_pass(name, pipeline::PassKind::draw);
+    pipeline::Pass& pass = graph.add_pass(name, PassKind::draw);
     pass.samples = samples_;
     if (with_color) pass.color = {color_};
     pass.depth = depth_;
@@ -145,7 +145,7 @@ class SampleFrame {
   pipeline::Emulation run(const pipeline::EmulationOptions& options = {}) {
     const pipeline::ImageId out =
         graph.add_image({"samples", Format::rgba32_float, graph.width() * samples_, graph.height(), 1});
-    pipeline::Pass& pass = graph.add_pass("unfold", pipeline::PassKind::full_screen);
+    pipeline::Pass& pass = graph.add_pass("unfold", PassKind::full_screen);
     pass.width = graph.width() * samples_;
     pass.color = {out};
     pass.sampled = {color_, depth_};
