@@ -1,5 +1,6 @@
 #include "pipeline/base/parallel.h"
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -10,6 +11,8 @@ void parallel_for(std::size_t count, int jobs, const std::function<void(std::siz
     for (std::size_t i = 0; i < count; ++i) body(i, 0);
     return;
   }
+  // Without it TBB starts no more threads than there are processors, and prints a warning.
+  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(jobs));
   tbb::task_arena arena(jobs);
   arena.execute([&] {
     tbb::parallel_for(
