@@ -10,35 +10,24 @@
 #include <thread>
 
 #include "cli/help_texts.h"
-#include "hwsim/base/diagnostics.h"
+#include "cli/messages.h"
 
 namespace hwsim::cli {
 namespace {
 
-InputError usage_error(std::string code, std::string message, std::string hint = {},
-                       std::string help = "`hwsim --help` lists the commands and their flags") {
-  return InputError(Diagnostic{.code = std::move(code), .message = std::move(message), .hint = std::move(hint),
-                               .help = std::move(help)},
-                    ExitStatus::usage);
-}
-
-std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
-  const std::string nearest = nearest_name(name, candidates);
-  return nearest.empty() ? "" : "did you mean `" + nearest + "`?";
-}
-
 /// A flag whose value is one of a few words.
 template <class T>
-void add_choice(CLI::App& app, const std::string& flag, std::string description, std::map<std::string, T> choices,
-                std::function<void(T)> set, const std::string& environment = {}) {
+void add_choice(CLI::App& app, const std::string& flag, std::string description,
+                std::map<std::string, T> choices, std::function<void(T)> set,
+                const std::string& environment = {}) {
   std::vector<std::string> words;
   for (const auto& [word, value] : choices) words.push_back(word);
   CLI::Option* option = app.add_option_function<std::string>(
       flag,
       [=](const std::string& text) {
         if (const auto found = choices.find(text); found != choices.end()) return set(found->second);
-        throw usage_error("U003", flag + " is `" + text + "`, must be " + CLI::detail::join(words, ", "),
-                          did_you_mean(text, words));
+        fail_usage("U003", flag + " is `" + text + "`, must be " + CLI::detail::join(words, ", "),
+                   did_you_mean(text, words));
       },
       std::move(description));
   option->type_name(CLI::detail::join(words, "|"));
@@ -56,7 +45,7 @@ Format format_from_name(const std::string& name) {
       {"table", Format::table}, {"csv", Format::csv}, {"json", Format::json}, {"md", Format::md}};
   if (const auto found = formats.find(name); found != formats.end()) return found->second;
   const std::vector<std::string> words = {"table", "csv", "json", "md"};
-  throw usage_error("U003", "--format is `" + name + "`, must be table, csv, json or md", did_you_mean(name, words));
+  fail_usage("U003", "--format is `" + name + "`, must be table, csv, json or md", did_you_mean(name, words));
 }
 
 FormatRequest parse_format(const std::string& text) {
@@ -64,7 +53,7 @@ FormatRequest parse_format(const std::string& text) {
   FormatRequest request{format_from_name(text.substr(0, equals)), ""};
   if (equals != std::string::npos) request.file = text.substr(equals + 1);
   if (equals != std::string::npos && request.file.empty())
-    throw usage_error("U003", "--format " + text + " names no file", "--format csv=passes.csv");
+    fail_usage("U003", "--format " + text + " names no file", "--format csv=passes.csv");
   return request;
 }
 
@@ -79,14 +68,24 @@ void add_common(CLI::App& app, CommonOptions& common) {
           "Shape of the answer; FORMAT=FILE writes it to a file (repeatable)")
       ->allow_extra_args(false)
       ->type_name("table|csv|json|md");
-  group->add_flag_callback("--json", [&common] { common.formats.push_back({Format::json, ""}); }, "--format json");
-  group->add_flag_callback("-q,--quiet", [&common] { common.verbosity = -1; }, "Only the answer and errors");
-  group->add_flag_callback("-v,--verbose", [&common] { common.verbosity = 1; }, "Say more on standard error");
-  const std::map<std::string, When> when = {{"auto", When::automatic}, {"always", When::always}, {"never", When::never}};
-  add_choice<When>(*group, "--color", "Colored messages; NO_COLOR and TERM=dumb are obeyed", when,
-                   [&common](When value) { common.color = value; }, "HWSIM_COLOR");
-  add_choice<When>(*group, "--progress", "Progress bar; auto: only on a terminal", when,
-                   [&common](When value) { common.progress = value; }, "HWSIM_PROGRESS");
+  group->add_flag_callback(
+      "--json",
+      [&common] {
+        common.formats.push_back({Format::json, ""});
+      },
+      "--format json");
+  group->add_flag_callback(
+      "-q,--quiet", [&common] { common.verbosity = -1; }, "Only the answer and errors");
+  group->add_flag_callback(
+      "-v,--verbose", [&common] { common.verbosity = 1; }, "Say more on standard error");
+  const std::map<std::string, When> when = {
+      {"auto", When::automatic}, {"always", When::always}, {"never", When::never}};
+  add_choice<When>(
+      *group, "--color", "Colored messages; NO_COLOR and TERM=dumb are obeyed", when,
+      [&common](When value) { common.color = value; }, "HWSIM_COLOR");
+  add_choice<When>(
+      *group, "--progress", "Progress bar; auto: only on a terminal", when,
+      [&common](When value) { common.progress = value; }, "HWSIM_PROGRESS");
   common.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   group->add_option("--jobs", common.jobs, "Threads; the results do not depend on it")
       ->check(CLI::Range(1, 1024))
@@ -95,7 +94,8 @@ void add_common(CLI::App& app, CommonOptions& common) {
 }
 
 void add_sets(CLI::App& app, std::vector<std::string>& sets) {
-  add_repeatable(app, "--set", sets, "gpu., scene., technique., emulator. or timing. setting (repeatable, last wins)",
+  add_repeatable(app, "--set", sets,
+                 "gpu., scene., technique., emulator. or timing. setting (repeatable, last wins)",
                  "PATH=VALUE");
 }
 
@@ -104,7 +104,8 @@ void add_overlays(CLI::App& app, std::vector<std::string>& overlays) {
 }
 
 void add_out(CLI::App& app, OutOptions& out) {
-  app.add_option("--out", out.directory, "Folder for the results; default runs/<date>-<time>-<id>")->type_name("DIR");
+  app.add_option("--out", out.directory, "Folder for the results; default runs/<date>-<time>-<id>")
+      ->type_name("DIR");
   app.add_flag("--force", out.force, "Replace the results in --out");
 }
 
@@ -116,7 +117,8 @@ void add_view(CLI::App& app, ViewOptions& view, bool required) {
          "--resolution", [&view](const std::string& text) { view.resolution = parse_resolution(text); },
          "Pixels, 1 to 16384 each way; default 1280x720")
       ->type_name("WxH");
-  app.add_option("--camera", view.camera, "A camera of the scene; default the first")->type_name("NAME|INDEX");
+  app.add_option("--camera", view.camera, "A camera of the scene; default the first")
+      ->type_name("NAME|INDEX");
   app.add_option("--lights", view.point_lights, "Point lights added to those of the scene")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
@@ -165,7 +167,8 @@ struct Parser {
  private:
   std::map<const CLI::App*, std::function<Command()>> results_;
 
-  CLI::App& add(CLI::App& parent, const std::string& name, std::string_view text, std::function<Command()> result);
+  CLI::App& add(CLI::App& parent, const std::string& name, std::string_view text,
+                std::function<Command()> result);
   void add_run();
   void add_reference();
   void add_list_and_show();
@@ -190,12 +193,14 @@ void Parser::add_run() {
          "-t,--technique",
          [this](const std::vector<std::string>& texts) {
            for (const std::string& text : texts)
-             for (std::string& technique : split_techniques(text)) run.techniques.push_back(std::move(technique));
+             for (std::string& technique : split_techniques(text))
+               run.techniques.push_back(std::move(technique));
          },
          "Techniques, separated by commas (repeatable); default none")
       ->allow_extra_args(false)
       ->type_name("NAME[:key=value]");
-  add_repeatable(sub, "-g,--gpu", run.gpus, "A GPU of `hwsim list gpus`, or a .toml file (repeatable)", "NAME|FILE")
+  add_repeatable(sub, "-g,--gpu", run.gpus, "A GPU of `hwsim list gpus`, or a .toml file (repeatable)",
+                 "NAME|FILE")
       ->envname("HWSIM_GPU");
   add_overlays(sub, run.overlays);
   sub.add_option("--engine", run.engine, "Timing engine; default queue")->type_name("roofline|queue");
@@ -220,10 +225,14 @@ void Parser::add_reference() {
 
 void Parser::add_list_and_show() {
   CLI::App& lister = add(app, "list", kHelpList, [this] { return Command(list); });
-  lister.add_option("WHAT", list.what, "gpus, scenes, techniques, counters or tables")->required()->type_name(" ");
+  lister.add_option("WHAT", list.what, "gpus, scenes, techniques, counters or tables")
+      ->required()
+      ->type_name(" ");
   add_common(lister, list.common);
   CLI::App& shower = add(app, "show", kHelpShow, [this] { return Command(show); });
-  shower.add_option("NAME", show.name, "A GPU, scene, technique, counter or table")->required()->type_name(" ");
+  shower.add_option("NAME", show.name, "A GPU, scene, technique, counter or table")
+      ->required()
+      ->type_name(" ");
   shower.add_flag("--origin", show.origin, "Where each value comes from");
   add_overlays(shower, show.overlays);
   add_sets(shower, show.sets);
@@ -252,7 +261,9 @@ void Parser::add_config() {
     return sub;
   };
   CLI::App& check = action("check", kHelpConfigCheck, Action::check);
-  check.add_option("FILE", config.names, "TOML files, or GPUs of `hwsim list gpus`")->required()->type_name(" ");
+  check.add_option("FILE", config.names, "TOML files, or GPUs of `hwsim list gpus`")
+      ->required()
+      ->type_name(" ");
   CLI::App& shower = action("show", kHelpConfigShow, Action::show);
   shower.add_option("GPU", config.names, "A GPU or a .toml file")->required()->expected(1)->type_name(" ");
   shower.add_flag("--all,--origin", config.origin, "Where each value comes from");
@@ -330,7 +341,8 @@ const CLI::App& selected(const CLI::App& app, const std::vector<std::string>& wo
 std::vector<std::string> subcommand_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
-    if (!sub->get_name().empty()) names.push_back(sub->get_name());  // option groups are subcommands without a name
+    if (!sub->get_name().empty())
+      names.push_back(sub->get_name());  // option groups are subcommands without a name
   return names;
 }
 
@@ -342,15 +354,16 @@ void check_command_names(const CLI::App& app, const std::vector<std::string>& wo
   const size_t depth = &chosen == &app ? 0 : 1;
   const std::string lead = depth == 0 ? "" : chosen.get_name() + " ";
   if (words.size() == depth)
-    throw usage_error("U002", "no command given after `hwsim" + (depth == 0 ? "" : " " + chosen.get_name()) + "`",
-                      "one of " + CLI::detail::join(names, ", "));
+    fail_usage("U002", "no command given after `hwsim" + (depth == 0 ? "" : " " + chosen.get_name()) + "`",
+               "one of " + CLI::detail::join(names, ", "));
   if (words[depth].starts_with("-")) return;
-  throw usage_error("U001", "unknown command `" + lead + words[depth] + "`", did_you_mean(words[depth], names));
+  fail_usage("U001", "unknown command `" + lead + words[depth] + "`", did_you_mean(words[depth], names));
 }
 
 std::vector<FlagInfo> flags_of(const CLI::App& app) {
   std::vector<FlagInfo> flags;
-  for (const CLI::Option* option : app.get_options([](const CLI::Option* o) { return !o->get_positional(); })) {
+  for (const CLI::Option* option :
+       app.get_options([](const CLI::Option* o) { return !o->get_positional(); })) {
     FlagInfo flag;
     for (const std::string& name : option->get_snames()) flag.names.push_back("-" + name);
     for (const std::string& name : option->get_lnames()) flag.names.push_back("--" + name);
@@ -358,31 +371,34 @@ std::vector<FlagInfo> flags_of(const CLI::App& app) {
     flag.takes_value = option->get_items_expected_max() > 0;
     flags.push_back(std::move(flag));
   }
-  for (const CLI::App* group : app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); }))
+  for (const CLI::App* group :
+       app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); }))
     for (FlagInfo& flag : flags_of(*group)) flags.push_back(std::move(flag));
   return flags;
 }
 
-InputError unknown_argument(const CLI::App& chosen, const std::string& argument) {
+[[noreturn]] void fail_unknown_argument(const CLI::App& chosen, const std::string& argument) {
   std::vector<std::string> names;
-  for (const FlagInfo& flag : flags_of(chosen)) names.insert(names.end(), flag.names.begin(), flag.names.end());
+  for (const FlagInfo& flag : flags_of(chosen))
+    names.insert(names.end(), flag.names.begin(), flag.names.end());
   const std::string name = argument.substr(0, argument.find('='));
   const std::string kind = argument.starts_with("-") ? "unknown flag `" : "unexpected argument `";
-  return usage_error("U001", kind + name + "`", did_you_mean(name, names),
-                     "`hwsim " + chosen.get_name() + " --help` lists the flags");
+  fail_usage("U001", kind + name + "`", did_you_mean(name, names),
+             "`hwsim " + chosen.get_name() + " --help` lists the flags");
 }
 
-InputError translate(const CLI::ParseError& error, const CLI::App& app, const std::vector<std::string>& words) {
+[[noreturn]] void translate(const CLI::ParseError& error, const CLI::App& app,
+                            const std::vector<std::string>& words) {
   const CLI::App& chosen = selected(app, words);
   const std::string help = "`hwsim " + chosen.get_name() + " --help` lists the flags";
   std::string message = error.what();
   if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
     const auto rest = app.remaining(true);
-    if (!rest.empty()) return unknown_argument(chosen, rest.front());
+    if (!rest.empty()) fail_unknown_argument(chosen, rest.front());
   }
-  if (dynamic_cast<const CLI::RequiredError*>(&error)) return usage_error("U002", message, "", help);
-  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) return usage_error("U004", message, "", help);
-  return usage_error("U003", message, "", help);
+  if (dynamic_cast<const CLI::RequiredError*>(&error)) fail_usage("U002", message, "", help);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) fail_usage("U004", message, "", help);
+  fail_usage("U003", message, "", help);
 }
 
 /// `--reference` stands alone or before a number; CLI11 would take the scene for the number.
@@ -412,7 +428,7 @@ Command parse_arguments(int argc, const char* const* argv) {
   } catch (const CLI::CallForVersion& version) {
     return PrintText{std::string(version.what()) + "\n"};
   } catch (const CLI::ParseError& error) {
-    throw translate(error, parser->app, words);
+    translate(error, parser->app, words);
   }
   return parser->command();
 }
@@ -449,11 +465,12 @@ Resolution parse_resolution(std::string_view text) {
   };
   if (cross == std::string_view::npos || !number(text.substr(0, cross), size.width_px) ||
       !number(text.substr(cross + 1), size.height_px))
-    throw usage_error("U005", "--resolution is `" + std::string(text) + "`, must be WIDTHxHEIGHT", "--resolution 1280x720");
+    fail_usage("U005", "--resolution is `" + std::string(text) + "`, must be WIDTHxHEIGHT",
+               "--resolution 1280x720");
   for (const int side : {size.width_px, size.height_px})
     if (side < 1 || side > kMaxSidePx)
-      throw usage_error("U005", "--resolution is " + std::string(text) + ", each side must be 1 to " +
-                                    std::to_string(kMaxSidePx) + " pixels");
+      fail_usage("U005", "--resolution is " + std::string(text) + ", each side must be 1 to " +
+                             std::to_string(kMaxSidePx) + " pixels");
   return size;
 }
 

@@ -16,7 +16,7 @@ std::optional<std::string> help_text(std::string_view command);
 
 /// What shells complete.
 struct FlagInfo {
-  std::vector<std::string> names;    ///< "-q", "--quiet"
+  std::vector<std::string> names;  ///< "-q", "--quiet"
   std::string description;
   bool takes_value = false;
 };
@@ -30,7 +30,8 @@ std::vector<CommandInfo> describe_commands();
 /// "1280x720". Throws InputError U005.
 Resolution parse_resolution(std::string_view text);
 
-/// Splits "msaa4x,agaa:c=2,msaa=8" into techniques: a piece with '=' but no ':' is a parameter of the one before it.
+/// Splits "msaa4x,agaa:c=2,msaa=8" into techniques: a piece with '=' but no ':' is a parameter of the one
+/// before it.
 std::vector<std::string> split_techniques(std::string_view text);
 
 }  // namespace hwsim::cli

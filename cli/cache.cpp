@@ -17,9 +17,12 @@ std::string duration_file(const std::string& key) {
 
 std::string folder_name(CacheFolder folder) {
   switch (folder) {
-    case CacheFolder::scenes: return "scenes";
-    case CacheFolder::references: return "references";
-    case CacheFolder::durations: return "durations";
+    case CacheFolder::scenes:
+      return "scenes";
+    case CacheFolder::references:
+      return "references";
+    case CacheFolder::durations:
+      return "durations";
   }
   return {};
 }

@@ -10,7 +10,8 @@ enum class CacheFolder { scenes, references, durations };
 /// "<root>/scenes", with <root> = pipeline::default_cache_directory().
 std::string cache_directory(CacheFolder folder);
 
-/// How long the same work took the last time. A cache that cannot be written or holds something else is no error.
+/// How long the same work took the last time. A cache that cannot be written or holds something else is no
+/// error.
 std::optional<double> remembered_seconds(const std::string& key);
 void remember_seconds(const std::string& key, double seconds);
 

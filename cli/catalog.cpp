@@ -7,6 +7,7 @@
 
 #include "algos/technique.h"
 #include "cli/files.h"
+#include "cli/messages.h"
 #include "hwsim/config/gpu_config.h"
 #include "hwsim/counters.h"
 #include "pipeline/scene/scene_source.h"
@@ -50,31 +51,39 @@ std::vector<std::string> parse_record(const std::string& text, size_t& at) {
 }  // namespace
 
 Table gpu_catalog() {
-  Table table{{{"id", "id"}, {"title", "title"}, {"architecture", "architecture"},
-               {"core_clock_mhz", "core MHz", true}, {"dram_bandwidth_gb_s", "DRAM GB/s", true}},
+  Table table{{{"id", "id"},
+               {"title", "title"},
+               {"architecture", "architecture"},
+               {"core_clock_mhz", "core MHz", true},
+               {"dram_bandwidth_gb_s", "DRAM GB/s", true}},
               {}};
   const std::string directory = config_directory();
   for (const std::string& id : list_gpus(directory)) {
     const GpuConfig gpu = load_gpu(id, {}, {}, directory);
-    table.rows.push_back({gpu.id, gpu.title, gpu.architecture, Real{gpu.core_clock_mhz, 0},
-                          Real{gpu.dram_bandwidth_gb_s, 1}});
+    table.rows.push_back(
+        {gpu.id, gpu.title, gpu.architecture, Real{gpu.core_clock_mhz, 0}, Real{gpu.dram_bandwidth_gb_s, 1}});
   }
   return table;
 }
 
 Table scene_catalog() {
-  Table table{{{"name", "name"}, {"parameters", "parameters", false, 40}, {"description", "description", false, 60}}, {}};
+  Table table{
+      {{"name", "name"}, {"parameters", "parameters", false, 40}, {"description", "description", false, 60}},
+      {}};
   for (const pipeline::GeneratorInfo& info : pipeline::generators()) {
     std::string parameters;
     for (const pipeline::GeneratorParameter& parameter : info.parameters)
-      parameters += fmt::format("{}{}={}", parameters.empty() ? "" : ", ", parameter.name, parameter.default_value);
+      parameters +=
+          fmt::format("{}{}={}", parameters.empty() ? "" : ", ", parameter.name, parameter.default_value);
     table.rows.push_back({info.name, parameters, info.description});
   }
   return table;
 }
 
 Table technique_catalog() {
-  Table table{{{"name", "name"}, {"parameters", "parameters", false, 40}, {"description", "description", false, 60}}, {}};
+  Table table{
+      {{"name", "name"}, {"parameters", "parameters", false, 40}, {"description", "description", false, 60}},
+      {}};
   for (const algos::TechniqueInfo& info : algos::techniques()) {
     std::string parameters;
     for (const algos::ParameterInfo& parameter : info.parameters)
@@ -85,7 +94,10 @@ Table technique_catalog() {
 }
 
 Table counter_catalog_table() {
-  Table table{{{"id", "id"}, {"unit", "unit"}, {"unit_kind", "kind"}, {"description", "one count is", false, kTextColumns}},
+  Table table{{{"id", "id"},
+               {"unit", "unit"},
+               {"unit_kind", "kind"},
+               {"description", "one count is", false, kTextColumns}},
               {}};
   for (const CounterInfo& info : counter_catalog())
     table.rows.push_back({std::string(info.id), std::string(info.unit), std::string(info.unit_kind),
@@ -103,8 +115,9 @@ Table table_catalog() {
     for (const Column& column : content.columns) columns += (columns.empty() ? "" : " ") + column.id;
     table.rows.push_back({entry.path().stem().string(), std::uint64_t{content.rows.size()}, columns});
   }
-  std::sort(table.rows.begin(), table.rows.end(),
-            [](const auto& a, const auto& b) { return std::get<std::string>(a[0]) < std::get<std::string>(b[0]); });
+  std::sort(table.rows.begin(), table.rows.end(), [](const auto& a, const auto& b) {
+    return std::get<std::string>(a[0]) < std::get<std::string>(b[0]);
+  });
   return table;
 }
 
@@ -121,15 +134,15 @@ Table parse_csv(const std::string& text, const std::string& path) {
   for (int row = 2; at < text.size(); ++row) {
     const std::vector<std::string> fields = parse_record(text, at);
     if (fields.size() != table.columns.size())
-      throw InputError(Diagnostic{.code = "U015",
-                                  .message = fmt::format("record {} has {} fields, the header has {}", row,
-                                                         fields.size(), table.columns.size()),
-                                  .place = {.file = path, .line_text = ""}});
+      fail("U015", fmt::format("record {} of `{}` has {} fields, the header has {}", row, path, fields.size(),
+                               table.columns.size()));
     table.rows.emplace_back(fields.begin(), fields.end());
   }
   return table;
 }
 
-std::string published_table_path(const std::string& name) { return (published_directory() / (name + ".csv")).string(); }
+std::string published_table_path(const std::string& name) {
+  return (published_directory() / (name + ".csv")).string();
+}
 
 }  // namespace hwsim::cli

@@ -6,6 +6,7 @@
 
 #include "cli/cache.h"
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "cli/table.h"
 
 namespace hwsim::cli {
@@ -30,15 +31,19 @@ std::vector<CachedFile> cached_files() {
     for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
       if (!entry.is_regular_file(error)) continue;
       const std::chrono::duration<double, std::ratio<86400>> age = now - entry.last_write_time(error);
-      files.push_back({directory.filename().string(), entry.path(), entry.file_size(error), std::max(0.0, age.count())});
+      files.push_back(
+          {directory.filename().string(), entry.path(), entry.file_size(error), std::max(0.0, age.count())});
     }
   }
-  std::sort(files.begin(), files.end(), [](const CachedFile& a, const CachedFile& b) { return a.path < b.path; });
+  std::sort(files.begin(), files.end(),
+            [](const CachedFile& a, const CachedFile& b) { return a.path < b.path; });
   return files;
 }
 
 Table file_table(const std::vector<CachedFile>& files) {
-  Table table{{{"folder", "folder"}, {"file", "file"}, {"bytes", "bytes", true}, {"age_days", "age, days", true}}, {}};
+  Table table{
+      {{"folder", "folder"}, {"file", "file"}, {"bytes", "bytes", true}, {"age_days", "age, days", true}},
+      {}};
   for (const CachedFile& file : files)
     table.rows.push_back({file.folder, file.path.filename().string(), file.bytes, Real{file.age_days, 1}});
   return table;
@@ -56,14 +61,13 @@ ExitStatus cache(const CacheOptions& options, Context& context) {
     for (const CachedFile& file : files) {
       std::error_code error;
       fs::remove(file.path, error);
-      if (error)
-        throw InputError(Diagnostic{.code = "U010",
-                                    .message = "cannot remove `" + file.path.string() + "`: " + error.message()});
+      if (error) fail("U010", "cannot remove `" + file.path.string() + "`: " + error.message());
     }
   print({.table = file_table(files)}, options.common);
   const char* verb = !options.prune ? "in" : options.dry_run ? "would be removed from" : "removed from";
-  context.log.say(fmt::format("{} files, {:.1f} MiB {} {}", files.size(), static_cast<double>(bytes) / (1024.0 * 1024.0),
-                              verb, fs::path(cache_directory(CacheFolder::scenes)).parent_path().string()));
+  context.log.say(fmt::format("{} files, {:.1f} MiB {} {}", files.size(),
+                              static_cast<double>(bytes) / (1024.0 * 1024.0), verb,
+                              fs::path(cache_directory(CacheFolder::scenes)).parent_path().string()));
   return ExitStatus::done;
 }
 

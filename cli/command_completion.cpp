@@ -1,5 +1,5 @@
-// Completion scripts: commands and flags are written into them; names of GPUs, scenes and techniques are asked for when
-// the user presses the key, so that they are those of the installed files.
+// Completion scripts: commands and flags are written into them; names of GPUs, scenes and techniques are
+// asked for when the user presses the key, so that they are those of the installed files.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -7,6 +7,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/messages.h"
 
 namespace hwsim::cli {
 namespace {
@@ -18,29 +19,23 @@ struct Values {
 };
 
 Values values_of_flag(const std::string& flag) {
-  static const std::map<std::string, Values> values = {
-      {"--gpu", {"", "gpus"}},
-      {"--technique", {"", "techniques"}},
-      {"--engine", {"roofline queue", ""}},
-      {"--format", {"table csv json md", ""}},
-      {"--color", {"auto always never", ""}},
-      {"--progress", {"auto always never", ""}}};
+  static const std::map<std::string, Values> values = {{"--gpu", {"", "gpus"}},
+                                                       {"--technique", {"", "techniques"}},
+                                                       {"--engine", {"roofline queue", ""}},
+                                                       {"--format", {"table csv json md", ""}},
+                                                       {"--color", {"auto always never", ""}},
+                                                       {"--progress", {"auto always never", ""}}};
   const auto found = values.find(flag);
   return found == values.end() ? Values{} : found->second;
 }
 
 Values values_of_command(const std::string& command) {
   static const std::map<std::string, Values> values = {
-      {"run", {"", "scenes"}},
-      {"reference", {"", "scenes"}},
-      {"scene check", {"", "scenes"}},
-      {"list", {"gpus scenes techniques counters tables", ""}},
-      {"show", {"", "gpus"}},
-      {"config check", {"", "gpus"}},
-      {"config show", {"", "gpus"}},
-      {"config diff", {"", "gpus"}},
-      {"config schema", {"gpu", ""}},
-      {"completion", {"bash zsh fish", ""}}};
+      {"run", {"", "scenes"}},         {"reference", {"", "scenes"}},
+      {"scene check", {"", "scenes"}}, {"list", {"gpus scenes techniques counters tables", ""}},
+      {"show", {"", "gpus"}},          {"config check", {"", "gpus"}},
+      {"config show", {"", "gpus"}},   {"config diff", {"", "gpus"}},
+      {"config schema", {"gpu", ""}},  {"completion", {"bash zsh fish", ""}}};
   const auto found = values.find(command);
   return found == values.end() ? Values{} : found->second;
 }
@@ -66,7 +61,8 @@ std::string top_words(const std::vector<CommandInfo>& commands) {
 std::string sub_words(const std::vector<CommandInfo>& commands, const std::string& parent) {
   std::string text;
   for (const CommandInfo& command : commands)
-    if (command.name.starts_with(parent + " ")) text += (text.empty() ? "" : " ") + command.name.substr(parent.size() + 1);
+    if (command.name.starts_with(parent + " "))
+      text += (text.empty() ? "" : " ") + command.name.substr(parent.size() + 1);
   return text;
 }
 
@@ -79,12 +75,15 @@ std::string bash_script(const std::vector<CommandInfo>& commands) {
   std::string script =
       "_hwsim() {\n  local current=\"${COMP_WORDS[COMP_CWORD]}\" previous=\"${COMP_WORDS[COMP_CWORD-1]}\"\n"
       "  local command=\"${COMP_WORDS[1]}\" words=\"\"\n"
-      "  case \"$command\" in scene|config|cache) [ \"$COMP_CWORD\" -gt 2 ] && command=\"$command ${COMP_WORDS[2]}\";; esac\n"
+      "  case \"$command\" in scene|config|cache) [ \"$COMP_CWORD\" -gt 2 ] && command=\"$command "
+      "${COMP_WORDS[2]}\";; esac\n"
       "  case \"$previous\" in\n";
   for (const char* flag : {"--gpu", "--technique", "--engine", "--format", "--color", "--progress"}) {
-    const std::string short_name = flag == std::string("--gpu") ? "|-g" : flag == std::string("--technique") ? "|-t" : "";
-    script += fmt::format("    {}{}) COMPREPLY=($(compgen -W \"{}\" -- \"$current\")); return;;\n", flag, short_name,
-                          shell_words(values_of_flag(flag)));
+    const std::string short_name = flag == std::string("--gpu")         ? "|-g"
+                                   : flag == std::string("--technique") ? "|-t"
+                                                                        : "";
+    script += fmt::format("    {}{}) COMPREPLY=($(compgen -W \"{}\" -- \"$current\")); return;;\n", flag,
+                          short_name, shell_words(values_of_flag(flag)));
   }
   script += "    --out|--overlay) COMPREPLY=($(compgen -f -- \"$current\")); return;;\n  esac\n";
   script += fmt::format("  if [ \"$COMP_CWORD\" -eq 1 ]; then words=\"{}\"; else\n  case \"$command\" in\n",
@@ -92,17 +91,20 @@ std::string bash_script(const std::vector<CommandInfo>& commands) {
   for (const CommandInfo& command : commands) {
     const std::string subs = sub_words(commands, command.name);
     const std::string values = subs.empty() ? shell_words(values_of_command(command.name)) : subs;
-    script += fmt::format("    \"{}\") if [ \"${{current#-}}\" != \"$current\" ]; then words=\"{}\"; else words=\"{}\"; fi;;\n",
-                          command.name, joined_flags(command), values);
+    script += fmt::format(
+        "    \"{}\") if [ \"${{current#-}}\" != \"$current\" ]; then words=\"{}\"; else words=\"{}\"; fi;;\n",
+        command.name, joined_flags(command), values);
   }
   return script +
-         "  esac; fi\n  COMPREPLY=($(compgen -W \"$words\" -- \"$current\") $(compgen -f -- \"$current\"))\n}\n"
+         "  esac; fi\n  COMPREPLY=($(compgen -W \"$words\" -- \"$current\") $(compgen -f -- "
+         "\"$current\"))\n}\n"
          "complete -o filenames -F _hwsim hwsim\n";
 }
 
 /// zsh runs the bash script: its emulation of compgen knows all that the script uses.
 std::string zsh_script(const std::vector<CommandInfo>& commands) {
-  return "#compdef hwsim\nautoload -U +X compinit && compinit\nautoload -U +X bashcompinit && bashcompinit\n" +
+  return "#compdef hwsim\nautoload -U +X compinit && compinit\nautoload -U +X bashcompinit && "
+         "bashcompinit\n" +
          bash_script(commands);
 }
 
@@ -120,8 +122,9 @@ std::string fish_flag(const std::string& condition, const FlagInfo& flag) {
     if (name.starts_with("--")) long_name = name;
   }
   if (flag.takes_value) line += " -r";
-  const std::string words = values_of_flag(long_name).catalog.empty() ? values_of_flag(long_name).words
-                                                                      : shell_words(values_of_flag(long_name)).substr(1);
+  const std::string words = values_of_flag(long_name).catalog.empty()
+                                ? values_of_flag(long_name).words
+                                : shell_words(values_of_flag(long_name)).substr(1);
   if (!words.empty()) line += " -f -a " + fish_quoted(words);
   return line + " -d " + fish_quoted(flag.description) + "\n";
 }
@@ -140,7 +143,8 @@ std::string fish_script(const std::vector<CommandInfo>& commands) {
     if (space != std::string::npos) inside += "; and __fish_seen_subcommand_from " + last;
     const Values values = values_of_command(command.name);
     const std::string words = values.catalog.empty() ? values.words : shell_words(values).substr(1);
-    if (!words.empty()) script += fmt::format("complete -c hwsim -n {} -a {}\n", fish_quoted(inside), fish_quoted(words));
+    if (!words.empty())
+      script += fmt::format("complete -c hwsim -n {} -a {}\n", fish_quoted(inside), fish_quoted(words));
     for (const FlagInfo& flag : command.flags) script += fish_flag(inside, flag);
   }
   return script;
@@ -155,9 +159,7 @@ ExitStatus completion(const CompletionOptions& options, Context&) {
   if (options.shell == "zsh") script = zsh_script(commands);
   if (options.shell == "fish") script = fish_script(commands);
   if (script.empty())
-    throw InputError(Diagnostic{.code = "U003",
-                                .message = "no completion for `" + options.shell + "`, only for bash, zsh and fish"},
-                     ExitStatus::usage);
+    fail_usage("U003", "no completion for `" + options.shell + "`, only for bash, zsh and fish");
   std::fputs(script.c_str(), stdout);
   return ExitStatus::done;
 }

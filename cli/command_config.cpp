@@ -2,6 +2,7 @@
 
 #include "cli/commands.h"
 #include "cli/gpu_view.h"
+#include "cli/messages.h"
 #include "cli/run_file.h"
 
 namespace hwsim::cli {
@@ -31,17 +32,19 @@ ExitStatus check(const ConfigOptions& options) {
 
 void check_kind(const ConfigOptions& options) {
   if (options.names.empty() || options.names.front() == "gpu") return;
-  throw InputError(Diagnostic{.code = "U003", .message = "no schema of `" + options.names.front() + "`, only of gpu"},
-                   ExitStatus::usage);
+  fail_usage("U003", "no schema of `" + options.names.front() + "`, only of gpu");
 }
 
 }  // namespace
 
 ExitStatus config(const ConfigOptions& options, Context& context) {
   using Action = ConfigOptions::Action;
-  const auto load = [&](size_t i) { return load_gpu_from_options(options.names[i], options.overlays, options.sets); };
+  const auto load = [&](size_t i) {
+    return load_gpu_from_options(options.names[i], options.overlays, options.sets);
+  };
   switch (options.action) {
-    case Action::check: return check(options);
+    case Action::check:
+      return check(options);
     case Action::show:
       if (options.common.formats.empty())
         write_text(show(load(0), options.origin));

@@ -116,7 +116,10 @@ std::string check_simulation(const TemporaryFolder& folder) {
 ExitStatus doctor(const DoctorOptions& options, Context& context) {
   const TemporaryFolder folder;
   const std::vector<std::pair<std::string, std::function<std::string()>>> checks = {
-      {"program", [] { return fmt::format("{} at {}, {}", build_info().version, build_info().commit, build_info().compiler); }},
+      {"program",
+       [] {
+         return fmt::format("{} at {}, {}", build_info().version, build_info().commit, build_info().compiler);
+       }},
       {"configs", check_configs},
       {"images", [&] { return check_images(folder); }},
       {"cache", check_cache},
@@ -137,7 +140,8 @@ ExitStatus doctor(const DoctorOptions& options, Context& context) {
       detail = error.what();
     }
     if (state == "failed") status = ExitStatus::run_failed;
-    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    const double ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     table.rows.push_back({name, state, Real{ms, 1}, detail});
   }
   print({.table = table}, options.common);

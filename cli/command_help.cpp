@@ -5,6 +5,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/error_codes.h"
+#include "cli/messages.h"
 #include "cli/table.h"
 
 namespace hwsim::cli {
@@ -17,7 +18,8 @@ bool looks_like_code(const std::string& topic) {
 
 void print_codes(const HelpOptions& options) {
   Table table{{{"code", "code"}, {"title", "means"}}, {}};
-  for (const ErrorCode& code : error_codes()) table.rows.push_back({std::string(code.code), std::string(code.title)});
+  for (const ErrorCode& code : error_codes())
+    table.rows.push_back({std::string(code.code), std::string(code.title)});
   print({.table = table, .heading = "hwsim help CODE explains one:\n\n"}, options.common);
 }
 
@@ -29,9 +31,7 @@ ExitStatus explain(std::string topic) {
                   std::string(code.explanation).c_str());
       return ExitStatus::done;
     }
-  throw InputError(Diagnostic{.code = "U014", .message = "no message has the code `" + topic + "`",
-                              .help = "`hwsim help` lists the codes"},
-                   ExitStatus::usage);
+  fail_usage("U014", "no message has the code `" + topic + "`", "", "`hwsim help` lists the codes");
 }
 
 }  // namespace
@@ -48,11 +48,8 @@ ExitStatus help(const HelpOptions& options, Context&) {
   }
   std::vector<std::string> names;
   for (const CommandInfo& command : describe_commands()) names.push_back(command.name);
-  const std::string nearest = nearest_name(options.topic, names);
-  throw InputError(Diagnostic{.code = "U014", .message = "no help on `" + options.topic + "`",
-                              .hint = nearest.empty() ? "" : "did you mean `" + nearest + "`?",
-                              .help = "`hwsim help` lists the codes, `hwsim --help` the commands"},
-                   ExitStatus::usage);
+  fail_usage("U014", "no help on `" + options.topic + "`", did_you_mean(options.topic, names),
+             "`hwsim help` lists the codes, `hwsim --help` the commands");
 }
 
 }  // namespace hwsim::cli

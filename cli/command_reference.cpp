@@ -33,17 +33,24 @@ ExitStatus reference(const ReferenceOptions& options, Context& context) {
   pipeline::write_image(image.image, directory.path("reference.png"));
   pipeline::write_image(image.image, directory.path("reference.exr"));
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  write_file(directory.path("manifest.json"),
-             manifest({.context = &context, .plan = &plan, .scene = loaded.scene.get(), .wall_s = wall_s, .state = "done"})
-                     .dump(2) +
-                 "\n");
+  write_file(directory.path("manifest.json"), manifest({.context = &context,
+                                                        .plan = &plan,
+                                                        .scene = loaded.scene.get(),
+                                                        .wall_s = wall_s,
+                                                        .state = "done"})
+                                                      .dump(2) +
+                                                  "\n");
   write_file(directory.path("log.txt"), context.log.text());
   directory.commit();
   guard.keep();
-  const Table table{{{"scene", "scene"}, {"samples", "samples a pixel", true}, {"wall_s", "seconds", true},
-                     {"from_cache", "from cache"}, {"image", "image"}},
-                    {{loaded.scene->name, static_cast<std::uint64_t>(options.samples), Real{image.wall_s, 2},
-                      image.from_cache ? "yes" : "no", (directory.final_place() / "reference.png").string()}}};
+  const Table table{
+      {{"scene", "scene"},
+       {"samples", "samples a pixel", true},
+       {"wall_s", "seconds", true},
+       {"from_cache", "from cache"},
+       {"image", "image"}},
+      {{loaded.scene->name, static_cast<std::uint64_t>(options.samples), Real{image.wall_s, 2},
+        image.from_cache ? "yes" : "no", (directory.final_place() / "reference.png").string()}}};
   print({.table = table}, options.common);
   return ExitStatus::done;
 }

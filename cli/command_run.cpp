@@ -19,8 +19,8 @@ using Clock = std::chrono::steady_clock;
 
 std::string plan_key(const RunPlan& plan, int jobs) {
   std::string key = fmt::format("{}|{}x{}|{}|{}|{}|{}", plan.view.scene, plan.view.resolution.width_px,
-                                plan.view.resolution.height_px, plan.view.point_lights, plan.reference_samples,
-                                plan.images, jobs);
+                                plan.view.resolution.height_px, plan.view.point_lights,
+                                plan.reference_samples, plan.images, jobs);
   for (const auto& technique : plan.techniques) key += "|" + technique_text(technique, true);
   for (const GpuConfig& gpu : plan.gpus) key += "|" + gpu.id;
   return key;
@@ -28,13 +28,14 @@ std::string plan_key(const RunPlan& plan, int jobs) {
 
 std::string plan_text(const RunPlan& plan, int jobs) {
   const size_t points = plan.techniques.size() * plan.gpus.size();
-  std::string text =
-      fmt::format("plan: {}, {} x {} = {}, {}x{}, engine {}, {} threads", plan.view.scene,
-                  plan.techniques.size() == 1 ? "1 technique" : fmt::format("{} techniques", plan.techniques.size()),
-                  plan.gpus.size() == 1 ? "1 GPU" : fmt::format("{} GPUs", plan.gpus.size()),
-                  points == 1 ? "1 point" : fmt::format("{} points", points), plan.view.resolution.width_px,
-                  plan.view.resolution.height_px, engine_name(plan.engine), jobs);
-  if (plan.reference_samples > 0) text += fmt::format(", reference of {} samples a pixel", plan.reference_samples);
+  std::string text = fmt::format(
+      "plan: {}, {} x {} = {}, {}x{}, engine {}, {} threads", plan.view.scene,
+      plan.techniques.size() == 1 ? "1 technique" : fmt::format("{} techniques", plan.techniques.size()),
+      plan.gpus.size() == 1 ? "1 GPU" : fmt::format("{} GPUs", plan.gpus.size()),
+      points == 1 ? "1 point" : fmt::format("{} points", points), plan.view.resolution.width_px,
+      plan.view.resolution.height_px, engine_name(plan.engine), jobs);
+  if (plan.reference_samples > 0)
+    text += fmt::format(", reference of {} samples a pixel", plan.reference_samples);
   if (const auto seconds = remembered_seconds(plan_key(plan, jobs)))
     text += fmt::format("; {} the last time", duration_text(*seconds));
   return text;
@@ -123,8 +124,8 @@ void Run::simulate() {
 void Run::record(const PointResult& point) {
   const bool alone = plan_.techniques.size() * plan_.gpus.size() == 1;
   const std::string& scene = loaded_.scene->name;
-  write_point_files(alone ? directory_->partial().string() : directory_->path(point_folder(point)), point, plan_, scene,
-                    reference_ ? &*reference_ : nullptr);
+  write_point_files(alone ? directory_->partial().string() : directory_->path(point_folder(point)), point,
+                    plan_, scene, reference_ ? &*reference_ : nullptr);
   if (!point.emulation_reused) {
     fragments_ += shaded_samples(point.emulation->trace);
     emulation_s_ += point.emulation->wall_s;
@@ -139,9 +140,13 @@ void Run::record(const PointResult& point) {
 }
 
 Json Run::manifest_now(const std::string& state) const {
-  return manifest({.context = &context_, .plan = &plan_, .scene = loaded_.scene.get(),
-                   .wall_s = std::chrono::duration<double>(Clock::now() - start_).count(), .fragments = fragments_,
-                   .emulation_s = emulation_s_, .state = state});
+  return manifest({.context = &context_,
+                   .plan = &plan_,
+                   .scene = loaded_.scene.get(),
+                   .wall_s = std::chrono::duration<double>(Clock::now() - start_).count(),
+                   .fragments = fragments_,
+                   .emulation_s = emulation_s_,
+                   .state = state});
 }
 
 ExitStatus Run::finish() {
@@ -156,9 +161,11 @@ ExitStatus Run::finish() {
   remember_seconds(plan_key(plan_, options_.common.jobs), manifest["wall_s"]);
 
   const Json several = {{"schema_version", kResultSchemaVersion}, {"results", results_}};
-  const std::string title = fmt::format("{} at {}x{}\n\n", loaded_.scene->name, plan_.view.resolution.width_px,
-                                        plan_.view.resolution.height_px);
-  print({.table = alone ? single_ : summary, .heading = alone ? heading_ : title, .footing = footing_,
+  const std::string title = fmt::format("{} at {}x{}\n\n", loaded_.scene->name,
+                                        plan_.view.resolution.width_px, plan_.view.resolution.height_px);
+  print({.table = alone ? single_ : summary,
+         .heading = alone ? heading_ : title,
+         .footing = footing_,
          .json = alone ? &results_.front() : &several},
         options_.common);
   const std::string place = directory_->final_place().string();

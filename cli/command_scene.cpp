@@ -5,6 +5,7 @@
 #include "cli/cache.h"
 #include "cli/commands.h"
 #include "cli/table.h"
+#include "pipeline/scene/scene_check.h"
 #include "pipeline/scene/scene_source.h"
 
 namespace hwsim::cli {
@@ -51,13 +52,21 @@ std::vector<Column> scene_columns() {
 /// One line a property reads better than one line a scene of fifteen columns.
 Table transposed(const Table& table) {
   Table result{{{"property", "property"}}, {}};
-  for (size_t row = 0; row < table.rows.size(); ++row) result.columns.push_back({fmt::format("scene_{}", row), "", true});
+  for (size_t row = 0; row < table.rows.size(); ++row)
+    result.columns.push_back({fmt::format("scene_{}", row), "", true});
   for (size_t column = 0; column < table.columns.size(); ++column) {
     auto& line = result.rows.emplace_back();
     line.push_back(table.columns[column].title);
     for (const auto& row : table.rows) line.push_back(row[column]);
   }
   return result;
+}
+
+bool is_file(const std::string& name) { return name.ends_with(".gltf") || name.ends_with(".glb"); }
+
+/// What there is to say about a scene that loads; of a file, what it uses too.
+std::vector<Diagnostic> findings(const std::string& name, const pipeline::Scene& scene) {
+  return is_file(name) ? pipeline::check_gltf(name) : scene.notes;
 }
 
 bool wants_lines(const CommonOptions& options) {
@@ -74,7 +83,7 @@ ExitStatus scene_check(const SceneCheckOptions& options, Context& context) {
       const pipeline::Scene scene = pipeline::open_scene(name, cache_directory(CacheFolder::scenes));
       table.rows.push_back(scene_row(scene));
       auto& list = notes.emplace_back(nlohmann::ordered_json::array());
-      for (const Diagnostic& note : scene.notes) {
+      for (const Diagnostic& note : findings(name, scene)) {
         list.push_back(note.message);
         context.log.report(note);
       }
@@ -83,7 +92,8 @@ ExitStatus scene_check(const SceneCheckOptions& options, Context& context) {
     }
   nlohmann::ordered_json json = to_json(table);
   for (size_t i = 0; i < json.size(); ++i) json[i]["notes"] = notes[i];
-  if (!table.rows.empty()) print({.table = wants_lines(options.common) ? transposed(table) : table, .json = &json}, options.common);
+  if (!table.rows.empty())
+    print({.table = wants_lines(options.common) ? transposed(table) : table, .json = &json}, options.common);
   if (!problems.empty()) throw InputError(problems);
   return ExitStatus::done;
 }

@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/gpu_view.h"
+#include "cli/messages.h"
 #include "pipeline/scene/scene_source.h"
 
 namespace hwsim::cli {
@@ -20,7 +21,9 @@ std::string choice_name(std::string_view choices, double index) {
 }
 
 Table parameter_table() {
-  return {{{"parameter", "parameter"}, {"default", "default", true}, {"range", "range"},
+  return {{{"parameter", "parameter"},
+           {"default", "default", true},
+           {"range", "range"},
            {"description", "description", false, 72}},
           {}};
 }
@@ -29,17 +32,20 @@ Answer describe(const algos::TechniqueInfo& info) {
   Answer answer{.table = parameter_table(), .heading = fmt::format("{}: {}\n\n", info.id, info.description)};
   for (const algos::ParameterInfo& p : info.parameters) {
     const bool named = !p.choices.empty();
-    answer.table.rows.push_back({std::string(p.name),
-                                 named ? choice_name(p.choices, p.default_value) : fmt::format("{}", p.default_value),
-                                 named ? std::string(p.choices) : range_text(p.min, p.max), std::string(p.description)});
+    answer.table.rows.push_back(
+        {std::string(p.name),
+         named ? choice_name(p.choices, p.default_value) : fmt::format("{}", p.default_value),
+         named ? std::string(p.choices) : range_text(p.min, p.max), std::string(p.description)});
   }
   return answer;
 }
 
 Answer describe(const pipeline::GeneratorInfo& info) {
-  Answer answer{.table = parameter_table(), .heading = fmt::format("{}: {}\n\n", info.name, info.description)};
+  Answer answer{.table = parameter_table(),
+                .heading = fmt::format("{}: {}\n\n", info.name, info.description)};
   for (const pipeline::GeneratorParameter& p : info.parameters)
-    answer.table.rows.push_back({p.name, fmt::format("{}", p.default_value), range_text(p.min, p.max), p.description});
+    answer.table.rows.push_back(
+        {p.name, fmt::format("{}", p.default_value), range_text(p.min, p.max), p.description});
   return answer;
 }
 
@@ -65,13 +71,11 @@ std::optional<Answer> find_entry(const std::string& name) {
 
 [[noreturn]] void fail_unknown(const std::string& name, const std::vector<std::string>& gpus) {
   std::vector<std::string> names = gpus;
-  for (const Table& catalog : {scene_catalog(), technique_catalog(), counter_catalog_table(), table_catalog()})
+  for (const Table& catalog :
+       {scene_catalog(), technique_catalog(), counter_catalog_table(), table_catalog()})
     for (std::string& entry : names_of(catalog)) names.push_back(std::move(entry));
-  const std::string nearest = nearest_name(name, names);
-  throw InputError(Diagnostic{.code = "U016",
-                              .message = "no GPU, scene, technique, counter or table is called `" + name + "`",
-                              .hint = nearest.empty() ? "" : "did you mean `" + nearest + "`?",
-                              .help = "`hwsim list gpus` (scenes, techniques, counters, tables) lists them"});
+  fail("U016", "no GPU, scene, technique, counter or table is called `" + name + "`",
+       did_you_mean(name, names), "`hwsim list gpus` (scenes, techniques, counters, tables) lists them");
 }
 
 }  // namespace

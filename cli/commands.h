@@ -1,5 +1,6 @@
 #pragma once
-// One function a command, one file a function. Each returns the exit status; bad input is thrown as InputError.
+// One function a command, one file a function. Each returns the exit status; bad input is thrown as
+// InputError.
 #include "cli/options.h"
 #include "cli/terminal.h"
 #include "hwsim/base/diagnostics.h"

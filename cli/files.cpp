@@ -1,4 +1,5 @@
 #include "cli/files.h"
+#include "cli/messages.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +7,6 @@
 #include <filesystem>
 #include <vector>
 
-#include "hwsim/base/diagnostics.h"
 #include "pipeline/base/file_io.h"
 
 namespace hwsim::cli {
@@ -31,19 +31,18 @@ std::string read_file(const std::string& path) {
 std::string config_directory() {
   if (const char* set = std::getenv("HWSIM_CONFIG_DIR"); set != nullptr && *set != '\0') {
     if (fs::is_directory(fs::path(set) / "gpus")) return set;
-    throw InputError(Diagnostic{.code = "U012",
-                                .message = "HWSIM_CONFIG_DIR is `" + std::string(set) + "`, which holds no folder gpus",
-                                .help = "unset HWSIM_CONFIG_DIR to use the files that came with hwsim"});
+    fail("U012", "HWSIM_CONFIG_DIR is `" + std::string(set) + "`, which holds no folder gpus", "",
+         "unset HWSIM_CONFIG_DIR to use the files that came with hwsim");
   }
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   const fs::path installed = program.parent_path().parent_path() / "share" / "hwsim" / "configs";
   for (const fs::path& candidate : {installed, fs::path(HWSIM_SOURCE_CONFIG_DIR)})
     if (fs::is_directory(candidate / "gpus", error)) return candidate.string();
-  throw InputError(Diagnostic{.code = "U012",
-                              .message = "the configuration files are neither in `" + installed.string() + "` nor in `" +
-                                         HWSIM_SOURCE_CONFIG_DIR + "`",
-                              .help = "install hwsim again, or set HWSIM_CONFIG_DIR to the folder that holds gpus"});
+  fail("U012",
+       "the configuration files are neither in `" + installed.string() + "` nor in `" +
+           HWSIM_SOURCE_CONFIG_DIR + "`",
+       "", "install hwsim again, or set HWSIM_CONFIG_DIR to the folder that holds gpus");
 }
 
 std::string hash_hex(std::string_view bytes) {

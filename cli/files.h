@@ -11,8 +11,8 @@ void write_file(const std::string& path, std::string_view text);
 /// Throws InputError U011 when it cannot be read.
 std::string read_file(const std::string& path);
 
-/// The folder with gpus/, scenes/ and published/: $HWSIM_CONFIG_DIR, else ../share/hwsim/configs beside the program's
-/// folder, else the source tree that it was built from. Throws InputError U012 when there is none.
+/// The folder with gpus/, scenes/ and published/: $HWSIM_CONFIG_DIR, else ../share/hwsim/configs beside the
+/// program's folder, else the source tree that it was built from. Throws InputError U012 when there is none.
 std::string config_directory();
 
 /// 64-bit FNV-1a as 16 hex digits: names of cached files, ids of runs. Not for untrusted keys.

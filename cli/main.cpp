@@ -3,6 +3,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "cli/simulate.h"
 
 namespace hwsim::cli {
@@ -20,22 +21,21 @@ CommonOptions common_of(const Command& command) {
 }
 
 ExitStatus dispatch(const Command& command, Context& context) {
-  return std::visit(
-      Overloaded{[](const PrintText& text) {
-                   std::fputs(text.text.c_str(), stdout);
-                   return ExitStatus::done;
-                 },
-                 [&](const RunOptions& o) { return run(o, context); },
-                 [&](const ReferenceOptions& o) { return reference(o, context); },
-                 [&](const ListOptions& o) { return list(o, context); },
-                 [&](const ShowOptions& o) { return show_entry(o, context); },
-                 [&](const SceneCheckOptions& o) { return scene_check(o, context); },
-                 [&](const ConfigOptions& o) { return config(o, context); },
-                 [&](const DoctorOptions& o) { return doctor(o, context); },
-                 [&](const HelpOptions& o) { return help(o, context); },
-                 [&](const CacheOptions& o) { return cache(o, context); },
-                 [&](const CompletionOptions& o) { return completion(o, context); }},
-      command);
+  return std::visit(Overloaded{[](const PrintText& text) {
+                                 std::fputs(text.text.c_str(), stdout);
+                                 return ExitStatus::done;
+                               },
+                               [&](const RunOptions& o) { return run(o, context); },
+                               [&](const ReferenceOptions& o) { return reference(o, context); },
+                               [&](const ListOptions& o) { return list(o, context); },
+                               [&](const ShowOptions& o) { return show_entry(o, context); },
+                               [&](const SceneCheckOptions& o) { return scene_check(o, context); },
+                               [&](const ConfigOptions& o) { return config(o, context); },
+                               [&](const DoctorOptions& o) { return doctor(o, context); },
+                               [&](const HelpOptions& o) { return help(o, context); },
+                               [&](const CacheOptions& o) { return cache(o, context); },
+                               [&](const CompletionOptions& o) { return completion(o, context); }},
+                    command);
 }
 
 ExitStatus report(const InputError& error, Log& log) {
@@ -46,8 +46,8 @@ ExitStatus report(const InputError& error, Log& log) {
 }
 
 ExitStatus report_internal(const char* what, Log& log) {
-  log.report({.code = "X001", .message = "internal error: " + std::string(what),
-              .help = "this is a mistake in hwsim, not in your input; please report it with the text above"});
+  log.report(problem("X001", "internal error: " + std::string(what), "",
+                     "this is a mistake in hwsim, not in your input; please report it with the text above"));
   return ExitStatus::run_failed;
 }
 
@@ -62,7 +62,7 @@ ExitStatus run_program(int argc, char** argv) {
   } catch (const InputError& error) {
     return report(error, context.log);
   } catch (const std::bad_alloc&) {
-    context.log.report({.code = "X002", .message = "out of memory", .help = "a smaller scene, or a smaller --resolution"});
+    context.log.report(problem("X002", "out of memory", "", "a smaller scene, or a smaller --resolution"));
     return ExitStatus::run_failed;
   } catch (const std::exception& error) {
     return report_internal(error.what(), context.log);

@@ -37,7 +37,7 @@ struct ViewOptions {
   std::optional<std::string> camera;  ///< a name or an index
   std::optional<int> point_lights;
   bool no_shadows = false;
-  std::vector<std::string> sets;      ///< "path=value"
+  std::vector<std::string> sets;  ///< "path=value"
 };
 
 struct OutOptions {
@@ -115,7 +115,8 @@ struct PrintText {
   std::string text;
 };
 
-using Command = std::variant<PrintText, RunOptions, ReferenceOptions, ListOptions, ShowOptions, SceneCheckOptions,
-                             ConfigOptions, DoctorOptions, HelpOptions, CacheOptions, CompletionOptions>;
+using Command =
+    std::variant<PrintText, RunOptions, ReferenceOptions, ListOptions, ShowOptions, SceneCheckOptions,
+                 ConfigOptions, DoctorOptions, HelpOptions, CacheOptions, CompletionOptions>;
 
 }  // namespace hwsim::cli

@@ -6,6 +6,7 @@
 #include "cli/arguments.h"
 #include "cli/files.h"
 #include "cli/help_texts.h"
+#include "cli/messages.h"
 #include "cli/run_file.h"
 #include "cli/table.h"
 #include "hwsim/config/settings.h"
@@ -20,7 +21,8 @@ struct SceneSettings {
 };
 template <class Visitor>
 void describe(Visitor& v, SceneSettings& s) {
-  v.key({"point_lights", 0, 1024, kNoFlags, "seeded point lights added to those of the scene"}, s.point_lights);
+  v.key({"point_lights", 0, 1024, kNoFlags, "seeded point lights added to those of the scene"},
+        s.point_lights);
   v.key({"shadows", 0, 1, kNoFlags, "a shadow map for the light that casts shadows"}, s.shadows);
   v.key({"shadow_map_px", 16, kMaxSidePx, kNoFlags, "side of the shadow map"}, s.shadow_map_px);
 }
@@ -45,11 +47,6 @@ void append(std::vector<Diagnostic>& problems, const InputError& error) {
   problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
 }
 
-std::string hint_for(const std::string& name, const std::vector<std::string>& candidates) {
-  const std::string nearest = nearest_name(name, candidates);
-  return nearest.empty() ? "" : "did you mean `" + nearest + "`?";
-}
-
 std::vector<Assignment> parse_sets(const std::vector<std::string>& texts, std::vector<Diagnostic>& problems) {
   std::vector<Assignment> sets;
   for (const std::string& text : texts) try {
@@ -68,8 +65,8 @@ bool is_scene_file(const std::string& scene) {
   return ending == ".gltf" || ending == ".glb";
 }
 
-/// scene.* holds settings of the view and, for a generated scene, the generator's own parameters; the generator checks
-/// the latter.
+/// scene.* holds settings of the view and, for a generated scene, the generator's own parameters; the
+/// generator checks the latter.
 ViewPlan plan_view(const ViewOptions& options, const std::vector<Assignment>& sets, const ViewPlan& start,
                    std::vector<Diagnostic>& problems) {
   ViewPlan plan = start;
@@ -78,7 +75,8 @@ ViewPlan plan_view(const ViewOptions& options, const std::vector<Assignment>& se
   std::vector<Assignment> own, generator;
   for (const Assignment& set : sets) {
     if (set.group() != "scene") continue;
-    const bool known = std::any_of(keys.begin(), keys.end(), [&](const Key& k) { return k.info.name == key_of(set); });
+    const bool known =
+        std::any_of(keys.begin(), keys.end(), [&](const Key& k) { return k.info.name == key_of(set); });
     (known || is_scene_file(plan.scene) ? own : generator).push_back(set);
   }
   apply_settings("scene", keys, own, problems);
@@ -93,9 +91,8 @@ ViewPlan plan_view(const ViewOptions& options, const std::vector<Assignment>& se
 
 Engine plan_engine(const std::string& name, std::vector<Diagnostic>& problems) {
   if (const auto engine = engine_from_name(name)) return *engine;
-  problems.push_back({.code = "U006",
-                      .message = "unknown timing engine `" + name + "`, must be roofline or queue",
-                      .hint = hint_for(name, {"roofline", "queue"})});
+  problems.push_back(problem("U006", "unknown timing engine `" + name + "`, must be roofline or queue",
+                             did_you_mean(name, std::vector<std::string>{"roofline", "queue"})));
   return Engine::queue;
 }
 
@@ -109,10 +106,10 @@ pipeline::SkipSwitches plan_skip(const std::string& text, std::vector<Diagnostic
     else if (name == "accepted_tiles")
       skip.accepted_tiles = true;
     else
-      problems.push_back({.code = "U007",
-                          .message = "`emulator.skip` names `" + name +
-                                     "`, must be all, none, or some of frustum,accepted_tiles",
-                          .hint = hint_for(name, {"all", "none", "frustum", "accepted_tiles"})});
+      problems.push_back(problem(
+          "U007",
+          "`emulator.skip` names `" + name + "`, must be all, none, or some of frustum,accepted_tiles",
+          did_you_mean(name, std::vector<std::string>{"all", "none", "frustum", "accepted_tiles"})));
   }
   return skip;
 }
@@ -141,14 +138,14 @@ std::vector<algos::TechniqueChoice> plan_techniques(const std::vector<std::strin
   const std::vector<std::string> candidates(known.begin(), known.end());
   for (const Assignment& set : sets)
     if (set.group() == "technique" && !used.contains(set.path) && choices.size() == texts.size())
-      problems.push_back({.code = "U008",
-                          .message = "no chosen technique has the parameter `" + key_of(set) + "`",
-                          .hint = hint_for(key_of(set), candidates),
-                          .help = "`hwsim show TECHNIQUE` lists the parameters of one"});
+      problems.push_back(problem("U008", "no chosen technique has the parameter `" + key_of(set) + "`",
+                                 did_you_mean(key_of(set), candidates),
+                                 "`hwsim show TECHNIQUE` lists the parameters of one"));
   return choices;
 }
 
-std::vector<GpuConfig> plan_gpus(const std::vector<std::string>& names, const std::vector<std::string>& overlays,
+std::vector<GpuConfig> plan_gpus(const std::vector<std::string>& names,
+                                 const std::vector<std::string>& overlays,
                                  const std::vector<Assignment>& sets, std::vector<Diagnostic>& problems) {
   std::vector<GpuConfig> gpus;
   const std::string directory = config_directory();
@@ -238,9 +235,10 @@ RunPlan make_run_plan(const RunOptions& options) {
   plan.view = plan_view(options.view, sets, file.view, problems);
   plan.engine = plan_engine(options.engine.value_or(timing.engine), problems);
   plan.skip = plan_skip(emulator.skip, problems);
-  plan.techniques = plan_techniques(options.techniques.empty() ? std::vector{file.technique} : options.techniques, sets,
-                                    problems);
-  plan.gpus = plan_gpus(options.gpus.empty() ? std::vector{file.gpu} : options.gpus, options.overlays, sets, problems);
+  plan.techniques = plan_techniques(
+      options.techniques.empty() ? std::vector{file.technique} : options.techniques, sets, problems);
+  plan.gpus = plan_gpus(options.gpus.empty() ? std::vector{file.gpu} : options.gpus, options.overlays, sets,
+                        problems);
   plan.reference_samples = options.reference_samples.value_or(file.reference_samples);
   plan.images = !options.no_image;
   if (!problems.empty()) throw InputError(problems);

@@ -1,6 +1,6 @@
 #pragma once
-// From the command line to a plan with every value decided, before anything is loaded or drawn. What is wrong is
-// reported all at once.
+// From the command line to a plan with every value decided, before anything is loaded or drawn. What is wrong
+// is reported all at once.
 #include <map>
 #include <string>
 #include <vector>

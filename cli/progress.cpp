@@ -55,7 +55,8 @@ void Progress::draw_bar(double done_ratio, const std::string& what) {
   const int filled = static_cast<int>(done_ratio * kBarColumns);
   std::string line = fmt::format("[{:=<{}}{: <{}}] {:3.0f} %  {}  {}", "", filled, "", kBarColumns - filled,
                                  done_ratio * 100.0, left, what);
-  line.resize(std::min(line.size(), static_cast<size_t>(terminal_columns() - 1)));  // a wrapped line can't be redrawn
+  line.resize(
+      std::min(line.size(), static_cast<size_t>(terminal_columns() - 1)));  // a wrapped line can't be redrawn
   std::fputs(("\r\033[K" + line).c_str(), stderr);
   std::fflush(stderr);
 }

@@ -8,8 +8,8 @@
 
 namespace hwsim::cli {
 
-/// On a terminal a bar with the time left, redrawn in place; elsewhere a line every 10 %. On standard error only.
-/// update() may be called from any thread.
+/// On a terminal a bar with the time left, redrawn in place; elsewhere a line every 10 %. On standard error
+/// only. update() may be called from any thread.
 class Progress {
  public:
   Progress(const CommonOptions& options, const Terminal& terminal);

@@ -25,10 +25,12 @@ Json pass_json(const PassTiming& pass, const PassWork& work) {
     json["units"][std::string(unit_name(static_cast<Unit>(u)))] = pass.sol_ratio[static_cast<size_t>(u)];
   for (int s = 0; s < kStreamCount; ++s) {
     const auto i = static_cast<size_t>(s);
-    json["bytes"][std::string(stream_name(static_cast<Stream>(s)))] = pass.dram_bytes.read[i] + pass.dram_bytes.write[i];
+    json["bytes"][std::string(stream_name(static_cast<Stream>(s)))] =
+        pass.dram_bytes.read[i] + pass.dram_bytes.write[i];
   }
   const PassCounters counters = total(work);
-  for (size_t i = 0; i < kCounterCount; ++i) json["counters"][std::string(counter_catalog()[i].id)] = values(counters)[i];
+  for (size_t i = 0; i < kCounterCount; ++i)
+    json["counters"][std::string(counter_catalog()[i].id)] = values(counters)[i];
   return json;
 }
 
@@ -72,7 +74,8 @@ std::string share_text(const PassTiming& pass, size_t rank) {
 Real stream_mb(const PassTiming& pass, std::initializer_list<Stream> streams) {
   double bytes = 0.0;
   for (const Stream stream : streams)
-    bytes += pass.dram_bytes.read[static_cast<size_t>(stream)] + pass.dram_bytes.write[static_cast<size_t>(stream)];
+    bytes += pass.dram_bytes.read[static_cast<size_t>(stream)] +
+             pass.dram_bytes.write[static_cast<size_t>(stream)];
   return {bytes / kBytesPerMb, 2};
 }
 
@@ -107,7 +110,8 @@ Json result_json(const PointResult& point, const RunPlan& plan, const std::strin
   json["image"] = image_json(point);
   Json skipped = Json::object();
   for (const auto& [name, count] : point.emulation->skipped) skipped[name] = count;
-  json["emulation"] = {{"wall_s", point.emulation->wall_s}, {"from_cache", point.emulation_reused}, {"skipped", skipped}};
+  json["emulation"] = {
+      {"wall_s", point.emulation->wall_s}, {"from_cache", point.emulation_reused}, {"skipped", skipped}};
   json["timing"] = {{"wall_s", point.timing_wall_s}};
   return json;
 }
@@ -115,14 +119,15 @@ Json result_json(const PointResult& point, const RunPlan& plan, const std::strin
 std::string headline_time(const FrameTiming& timing) {
   std::string text = fmt::format("{:.3g} ms", timing.time_ns / kNsPerMs);
   if (timing.interval_ns)
-    text += fmt::format(" [{:.3g}, {:.3g}]", (*timing.interval_ns)[0] / kNsPerMs, (*timing.interval_ns)[1] / kNsPerMs);
+    text += fmt::format(" [{:.3g}, {:.3g}]", (*timing.interval_ns)[0] / kNsPerMs,
+                        (*timing.interval_ns)[1] / kNsPerMs);
   return text + " " + std::string(support_name(timing.support));
 }
 
 std::string headline(const PointResult& point, const RunPlan& plan, const std::string& scene_name) {
-  std::string text = fmt::format("{}, {} on {} at {}x{}: {}\n", scene_name, technique_text(*point.technique),
-                                 point.gpu->id, plan.view.resolution.width_px, plan.view.resolution.height_px,
-                                 headline_time(point.timing));
+  std::string text =
+      fmt::format("{}, {} on {} at {}x{}: {}\n", scene_name, technique_text(*point.technique), point.gpu->id,
+                  plan.view.resolution.width_px, plan.view.resolution.height_px, headline_time(point.timing));
   if (!point.timing.passes.empty()) {
     const PassTiming& slowest = slowest_pass(point.timing);
     text += fmt::format("slowest pass: {}, {:.3g} ms, limited by {} ({} of its time)\n", slowest.name,
@@ -136,10 +141,18 @@ std::string headline(const PointResult& point, const RunPlan& plan, const std::s
 }
 
 Table pass_table(const PointResult& point) {
-  Table table{{{"pass", "pass"}, {"kind", "kind"}, {"time_ms", "ms", true}, {"share_pct", "% of frame", true},
-               {"limiter", "limiter"}, {"runner_up", "next"}, {"fragments", "fragments", true},
-               {"shaded", "shaded", true}, {"depth_mb", "depth MB", true}, {"color_mb", "color MB", true},
-               {"texture_mb", "texture MB", true}, {"other_mb", "other MB", true}},
+  Table table{{{"pass", "pass"},
+               {"kind", "kind"},
+               {"time_ms", "ms", true},
+               {"share_pct", "% of frame", true},
+               {"limiter", "limiter"},
+               {"runner_up", "next"},
+               {"fragments", "fragments", true},
+               {"shaded", "shaded", true},
+               {"depth_mb", "depth MB", true},
+               {"color_mb", "color MB", true},
+               {"texture_mb", "texture MB", true},
+               {"other_mb", "other MB", true}},
               {}};
   for (size_t i = 0; i < point.timing.passes.size(); ++i) {
     const PassTiming& pass = point.timing.passes[i];
@@ -157,8 +170,12 @@ Table pass_table(const PointResult& point) {
 }
 
 Table unit_table(const PointResult& point) {
-  Table table{{{"unit", "unit"}, {"busy_ms", "busy ms", true}, {"stack_ms", "share ms", true},
-               {"share_pct", "% of frame", true}, {"sol_pct", "SOL %", true}, {"band", "use"}},
+  Table table{{{"unit", "unit"},
+               {"busy_ms", "busy ms", true},
+               {"stack_ms", "share ms", true},
+               {"share_pct", "% of frame", true},
+               {"sol_pct", "SOL %", true},
+               {"band", "use"}},
               {}};
   for (size_t u = 0; u < kUnitCount; ++u) {
     double busy_ns = 0.0, stack_ns = 0.0;
@@ -169,7 +186,8 @@ Table unit_table(const PointResult& point) {
     const double frame_ns = std::max(point.timing.time_ns, 1e-9);
     table.rows.push_back({std::string(unit_name(static_cast<Unit>(u))), Real{busy_ns / kNsPerMs, 4},
                           Real{stack_ns / kNsPerMs, 4}, Real{100.0 * stack_ns / frame_ns, 1},
-                          Real{100.0 * busy_ns / frame_ns, 1}, busy_ns > 0.0 ? band_of(busy_ns / frame_ns) : "idle"});
+                          Real{100.0 * busy_ns / frame_ns, 1},
+                          busy_ns > 0.0 ? band_of(busy_ns / frame_ns) : "idle"});
   }
   return table;
 }
@@ -181,7 +199,8 @@ Table wide_pass_table(const PointResult& point) {
       table.columns.push_back({fmt::format("{}.{}", unit_name(static_cast<Unit>(u)), quantity), ""});
   for (const char* direction : {"read_bytes", "write_bytes"})
     for (int s = 0; s < kStreamCount; ++s)
-      table.columns.push_back({fmt::format("dram.{}_{}", stream_name(static_cast<Stream>(s)), direction), ""});
+      table.columns.push_back(
+          {fmt::format("dram.{}_{}", stream_name(static_cast<Stream>(s)), direction), ""});
   for (const CounterInfo& counter : counter_catalog()) table.columns.push_back({std::string(counter.id), ""});
 
   for (size_t i = 0; i < point.timing.passes.size(); ++i) {
@@ -222,21 +241,37 @@ std::vector<Cell> summary_row(const PointResult& point) {
     if (!timing.interval_ns) return NotApplicable{};
     return Real{(*timing.interval_ns)[i] / kNsPerMs, 3};
   };
-  const Cell limiter = timing.passes.empty() ? Cell{NotApplicable{}}
-                                             : Cell{fmt::format("{} in {}", unit_name(slowest_pass(timing).limiter),
-                                                                slowest_pass(timing).name)};
-  return {technique_text(*point.technique), point.gpu->id, Real{timing.time_ns / kNsPerMs, 3}, bound(0), bound(1),
-          std::string(support_name(timing.support)), limiter, Real{dram_bytes(timing.dram_bytes) / kBytesPerMb, 1},
+  const Cell limiter =
+      timing.passes.empty()
+          ? Cell{NotApplicable{}}
+          : Cell{fmt::format("{} in {}", unit_name(slowest_pass(timing).limiter), slowest_pass(timing).name)};
+  return {technique_text(*point.technique),
+          point.gpu->id,
+          Real{timing.time_ns / kNsPerMs, 3},
+          bound(0),
+          bound(1),
+          std::string(support_name(timing.support)),
+          limiter,
+          Real{dram_bytes(timing.dram_bytes) / kBytesPerMb, 1},
           Real{static_cast<double>(point.emulation->trace.peak_memory_bytes) / kBytesPerMib, 1},
-          shaded_samples(point.emulation->trace), error(&pipeline::ImageError::flip_mean, 4),
+          shaded_samples(point.emulation->trace),
+          error(&pipeline::ImageError::flip_mean, 4),
           error(&pipeline::ImageError::psnr_db, 2)};
 }
 
 Table summary_table(std::vector<std::vector<Cell>> rows) {
-  return {{{"technique", "technique"}, {"gpu", "GPU"}, {"time_ms", "ms", true}, {"lo_ms", "lo", true},
-           {"hi_ms", "hi", true}, {"support", "support"}, {"limiter", "limiter of the slowest pass"},
-           {"dram_mb", "DRAM MB", true}, {"memory_mib", "memory MiB", true},
-           {"shaded_samples", "shaded samples", true}, {"flip_mean", "FLIP", true}, {"psnr_db", "PSNR dB", true}},
+  return {{{"technique", "technique"},
+           {"gpu", "GPU"},
+           {"time_ms", "ms", true},
+           {"lo_ms", "lo", true},
+           {"hi_ms", "hi", true},
+           {"support", "support"},
+           {"limiter", "limiter of the slowest pass"},
+           {"dram_mb", "DRAM MB", true},
+           {"memory_mib", "memory MiB", true},
+           {"shaded_samples", "shaded samples", true},
+           {"flip_mean", "FLIP", true},
+           {"psnr_db", "PSNR dB", true}},
           std::move(rows)};
 }
 

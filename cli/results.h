@@ -12,12 +12,13 @@ namespace hwsim::cli {
 inline constexpr int kResultSchemaVersion = 1;
 
 /// The JSON contract of docs/results.md.
-nlohmann::ordered_json result_json(const PointResult& point, const RunPlan& plan, const std::string& scene_name);
+nlohmann::ordered_json result_json(const PointResult& point, const RunPlan& plan,
+                                   const std::string& scene_name);
 
-Table pass_table(const PointResult& point);      ///< the passes as people read them
-Table unit_table(const PointResult& point);      ///< the units over the frame
+Table pass_table(const PointResult& point);       ///< the passes as people read them
+Table unit_table(const PointResult& point);       ///< the units over the frame
 Table wide_pass_table(const PointResult& point);  ///< passes.csv: every time, share, byte and counter
-Table counter_table(const PointResult& point);   ///< counters.csv: one row a counter
+Table counter_table(const PointResult& point);    ///< counters.csv: one row a counter
 
 /// One row of the summary of several points; `point` may go afterwards.
 std::vector<Cell> summary_row(const PointResult& point);

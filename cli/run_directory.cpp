@@ -9,23 +9,23 @@
 #include <string_view>
 
 #include "cli/files.h"
-#include "hwsim/base/diagnostics.h"
+#include "cli/messages.h"
 
 namespace hwsim::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& path, const std::error_code& error) {
-  throw InputError(
-      Diagnostic{.code = "U010", .message = "cannot write `" + path.string() + "`: " + error.message()});
+[[noreturn]] void fail_to_write(const fs::path& path, const std::error_code& error) {
+  fail("U010", "cannot write `" + path.string() + "`: " + error.message());
 }
 
 fs::path default_place(const std::string& id_source) {
   const auto now = std::chrono::system_clock::now();
   const auto ticks = std::to_string(now.time_since_epoch().count());
   const std::string id = hash_hex(id_source + ticks + std::to_string(getpid())).substr(0, 6);
-  return fs::path("runs") / fmt::format("{:%Y%m%d-%H%M%S}-{}", fmt::localtime(std::chrono::system_clock::to_time_t(now)), id);
+  return fs::path("runs") /
+         fmt::format("{:%Y%m%d-%H%M%S}-{}", fmt::localtime(std::chrono::system_clock::to_time_t(now)), id);
 }
 
 /// --force deletes: only folders that hwsim wrote, or empty ones.
@@ -36,14 +36,12 @@ bool may_be_replaced(const fs::path& place) {
 void check_free(const fs::path& place, bool force) {
   std::error_code error;
   if (fs::symlink_status(place, error).type() == fs::file_type::not_found) return;
-  Diagnostic d{.code = "U013", .message = "`" + place.string() + "` exists and is not overwritten",
-               .help = "another --out, or --force to replace it"};
-  if (force && may_be_replaced(place)) return;
-  if (force) {
-    d.message = "`" + place.string() + "` is not a folder of results, --force does not replace it";
-    d.help = "another --out, or remove it yourself";
-  }
-  throw InputError(d);
+  if (!force)
+    fail("U013", "`" + place.string() + "` exists and is not overwritten", "",
+         "another --out, or --force to replace it");
+  if (!may_be_replaced(place))
+    fail("U013", "`" + place.string() + "` is not a folder of results, --force does not replace it", "",
+         "another --out, or remove it yourself");
 }
 
 }  // namespace
@@ -57,7 +55,7 @@ RunDirectory::RunDirectory(const OutOptions& options, const std::string& id_sour
   std::error_code error;
   if (final_.has_parent_path()) fs::create_directories(final_.parent_path(), error);
   if (!error) fs::create_directory(partial_, error);
-  if (error) fail(final_, error);
+  if (error) fail_to_write(final_, error);
 }
 
 RunDirectory::~RunDirectory() {
@@ -72,7 +70,7 @@ void RunDirectory::commit() {
   const bool replaces = replace_ && fs::exists(final_, error);
   if (replaces) fs::rename(final_, old, error);
   if (!error) fs::rename(partial_, final_, error);
-  if (error) fail(final_, error);
+  if (error) fail_to_write(final_, error);
   committed_ = true;
   if (replaces) fs::remove_all(old, error);
   if (named_by_us_) point_latest_here();

@@ -12,8 +12,8 @@ namespace hwsim::cli {
 /// ".<name>.partial-<pid>" and renamed by commit(). Removed when it is not committed, on Ctrl-C too.
 class RunDirectory {
  public:
-  /// Throws InputError U013 when the place is taken (unless options.force and it holds results of hwsim) and U010 when
-  /// it cannot be written.
+  /// Throws InputError U013 when the place is taken (unless options.force and it holds results of hwsim) and
+  /// U010 when it cannot be written.
   RunDirectory(const OutOptions& options, const std::string& id_source);
   ~RunDirectory();
   RunDirectory(const RunDirectory&) = delete;
@@ -31,8 +31,9 @@ class RunDirectory {
   bool replace_ = false, named_by_us_ = false, committed_ = false;
 };
 
-/// While it lives, SIGINT and SIGTERM remove `folder` (when not empty) and end the process with status 130 or 143, at
-/// once, whatever the other threads are doing. Signals are blocked in the threads started later. Make it first.
+/// While it lives, SIGINT and SIGTERM remove `folder` (when not empty) and end the process with status 130 or
+/// 143, at once, whatever the other threads are doing. Signals are blocked in the threads started later. Make
+/// it first.
 class InterruptGuard {
  public:
   InterruptGuard();

@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <toml++/toml.h>
 #include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "cli/files.h"
 #include "cli/help_texts.h"
+#include "cli/messages.h"
 
 namespace hwsim::cli {
 namespace {
@@ -21,7 +22,8 @@ constexpr int kSchema = 1;
 /// Takes the keys of a file one by one; what is left over at the end nobody knows.
 class Reader {
  public:
-  Reader(toml::table& table, std::string path, const std::string& text) : table_(table), path_(std::move(path)) {
+  Reader(toml::table& table, std::string path, const std::string& text)
+      : table_(table), path_(std::move(path)) {
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) lines_.push_back(line);
   }
@@ -34,15 +36,15 @@ class Reader {
     if (const std::optional<T> value = node->value_exact<T>())
       target = *value;
     else
-      problem("C013", "`" + key + "` must be " + expected, node->source());
+      add("C013", "`" + key + "` must be " + expected, node->source());
   }
 
   void take_count(const std::string& key, int& target, int low, int high) {
     std::int64_t value = target;
     take(key, value, "a whole number");
     if (value < low || value > high)
-      problem("C014", fmt::format("`{}` is {}, must be between {} and {}", key, value, low, high),
-              table_.get(key)->source());
+      add("C014", fmt::format("`{}` is {}, must be between {} and {}", key, value, low, high),
+          table_.get(key)->source());
     else
       target = static_cast<int>(value);
   }
@@ -51,19 +53,21 @@ class Reader {
     for (const auto& [key, node] : table_) {
       const std::string name(key.str());
       if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
-      const std::string nearest = nearest_name(name, known_);
-      problem("C012", "unknown key `" + name + "` in a run file", key.source(),
-              nearest.empty() ? "" : "did you mean `" + nearest + "`?", static_cast<int>(name.size()));
+      add("C012", "unknown key `" + name + "` in a run file", key.source(), did_you_mean(name, known_),
+          static_cast<int>(name.size()));
     }
     if (!problems_.empty()) throw InputError(problems_);
   }
 
-  void problem(const std::string& code, const std::string& message, const toml::source_region& where,
-               const std::string& hint = {}, int length = 1) {
-    SourcePlace place{path_, static_cast<int>(where.begin.line), static_cast<int>(where.begin.column), length, ""};
+  void add(const std::string& code, const std::string& message, const toml::source_region& where,
+           const std::string& hint = {}, int length = 1) {
+    SourcePlace place{path_, static_cast<int>(where.begin.line), static_cast<int>(where.begin.column), length,
+                      ""};
     if (place.line > 0 && static_cast<size_t>(place.line) <= lines_.size())
       place.line_text = lines_[static_cast<size_t>(place.line) - 1];
-    problems_.push_back({.code = code, .message = message, .place = place, .hint = hint});
+    Diagnostic d = problem(code, message, hint);
+    d.place = place;
+    problems_.push_back(std::move(d));
   }
 
  private:
@@ -78,14 +82,15 @@ toml::table parse(const std::string& text, const std::string& path) {
     return toml::parse(text, path);
   } catch (const toml::parse_error& error) {
     const auto& where = error.source().begin;
-    throw InputError(Diagnostic{.code = "C011",
-                                .message = "not TOML: " + std::string(error.description()),
-                                .place = {path, static_cast<int>(where.line), static_cast<int>(where.column), 1, ""}});
+    Diagnostic d = problem("C011", "not TOML: " + std::string(error.description()));
+    d.place = {path, static_cast<int>(where.line), static_cast<int>(where.column), 1, ""};
+    throw InputError(d);
   }
 }
 
 /// A path in a file is relative to that file; names of generators and GPUs are no paths.
-std::string resolve(const std::string& name, const std::string& file, std::initializer_list<const char*> endings) {
+std::string resolve(const std::string& name, const std::string& file,
+                    std::initializer_list<const char*> endings) {
   for (const char* ending : endings)
     if (name.ends_with(ending)) return (fs::path(file).parent_path() / name).lexically_normal().string();
   return name;
@@ -96,10 +101,12 @@ void check_kind(Reader& reader, const toml::table& table) {
   std::string kind = "(missing)";
   reader.take("schema", schema, "a whole number");
   reader.take("kind", kind, "text");
-  const auto where = [&](const char* key) { return table.get(key) ? table.get(key)->source() : table.source(); };
+  const auto where = [&](const char* key) {
+    return table.get(key) ? table.get(key)->source() : table.source();
+  };
   if (schema != kSchema)
-    reader.problem("C019", fmt::format("schema is {}, this program reads {}", schema, kSchema), where("schema"));
-  if (kind != "run") reader.problem("C019", "kind is `" + kind + "`, must be `run`", where("kind"));
+    reader.add("C019", fmt::format("schema is {}, this program reads {}", schema, kSchema), where("schema"));
+  if (kind != "run") reader.add("C019", "kind is `" + kind + "`, must be `run`", where("kind"));
 }
 
 std::string skip_text(const pipeline::SkipSwitches& skip) {
@@ -129,14 +136,15 @@ RunFile read_run_file(const std::string& path) {
   reader.take_count("shadow_map_px", file.view.shadow_map_px, 16, kMaxSidePx);
   reader.take_count("point_lights", file.view.point_lights, 0, 1024);
   reader.take_count("reference_samples", file.reference_samples, 0, 65536);
-  if (file.view.scene.empty()) reader.problem("C015", "`scene` is missing", table.source());
+  if (file.view.scene.empty()) reader.add("C015", "`scene` is missing", table.source());
   reader.finish();
   file.view.scene = resolve(file.view.scene, path, {".gltf", ".glb"});
   file.gpu = resolve(file.gpu, path, {".toml"});
   return file;
 }
 
-std::string run_file_text(const RunPlan& plan, const algos::TechniqueChoice& technique, const std::string& gpu_file) {
+std::string run_file_text(const RunPlan& plan, const algos::TechniqueChoice& technique,
+                          const std::string& gpu_file) {
   const ViewPlan& view = plan.view;
   const bool is_path = view.scene.ends_with(".gltf") || view.scene.ends_with(".glb");
   return fmt::format(
@@ -144,9 +152,10 @@ std::string run_file_text(const RunPlan& plan, const algos::TechniqueChoice& tec
       "width_px = {}\nheight_px = {}\ncamera = {}\npoint_lights = {}\nshadows = {}\nshadow_map_px = {}\n"
       "emulator_skip = {}\nreference_samples = {}\n",
       kSchema, quoted(is_path ? fs::absolute(view.scene).lexically_normal().string() : view.scene),
-      quoted(technique_text(technique, true)), quoted(gpu_file), quoted(std::string(engine_name(plan.engine))),
-      view.resolution.width_px, view.resolution.height_px, quoted(view.camera), view.point_lights, view.shadows,
-      view.shadow_map_px, quoted(skip_text(plan.skip)), plan.reference_samples);
+      quoted(technique_text(technique, true)), quoted(gpu_file),
+      quoted(std::string(engine_name(plan.engine))), view.resolution.width_px, view.resolution.height_px,
+      quoted(view.camera), view.point_lights, view.shadows, view.shadow_map_px, quoted(skip_text(plan.skip)),
+      plan.reference_samples);
 }
 
 }  // namespace hwsim::cli

@@ -19,6 +19,7 @@ struct RunFile {
 RunFile read_run_file(const std::string& path);
 
 /// The text of a run.toml for one point of a plan; `gpu_file` stands beside it.
-std::string run_file_text(const RunPlan& plan, const algos::TechniqueChoice& technique, const std::string& gpu_file);
+std::string run_file_text(const RunPlan& plan, const algos::TechniqueChoice& technique,
+                          const std::string& gpu_file);
 
 }  // namespace hwsim::cli

@@ -70,7 +70,8 @@ void write_point_files(const std::string& folder, const PointResult& point, cons
 std::string point_folder(const PointResult& point) {
   std::string name = technique_text(*point.technique) + "@" + point.gpu->id;
   for (char& c : name)
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && std::string_view("@+-_.").find(c) == std::string_view::npos)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 &&
+        std::string_view("@+-_.").find(c) == std::string_view::npos)
       c = '_';
   return name;
 }
@@ -103,8 +104,9 @@ Json manifest(const ManifestInput& input) {
   if (input.scene)
     for (const Diagnostic& note : input.scene->notes) json["notes"].push_back(note.message);
   json["wall_s"] = input.wall_s;
-  json["fragments_per_s"] =
-      input.emulation_s > 0.0 ? Json(static_cast<double>(input.fragments) / input.emulation_s) : Json(nullptr);
+  json["fragments_per_s"] = input.emulation_s > 0.0
+                                ? Json(static_cast<double>(input.fragments) / input.emulation_s)
+                                : Json(nullptr);
   json["state"] = input.state;
   return json;
 }

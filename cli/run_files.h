@@ -8,7 +8,8 @@
 
 namespace hwsim::cli {
 
-/// Everything that belongs to one point: result.json, tables, trace, images, and a run.toml with its gpu.toml.
+/// Everything that belongs to one point: result.json, tables, trace, images, and a run.toml with its
+/// gpu.toml.
 void write_point_files(const std::string& folder, const PointResult& point, const RunPlan& plan,
                        const std::string& scene_name, const ReferenceImage* reference);
 
@@ -19,11 +20,12 @@ struct ManifestInput {
   double wall_s = 0.0;
   std::uint64_t fragments = 0;  ///< shaded by emulations of this run
   double emulation_s = 0.0;
-  std::string state;            ///< done, failed
+  std::string state;  ///< done, failed
 };
 nlohmann::ordered_json manifest(const ManifestInput& input);
 
-/// "msaa4x@gtx980": a point's folder in a run of several, without characters that file systems or shells mind.
+/// "msaa4x@gtx980": a point's folder in a run of several, without characters that file systems or shells
+/// mind.
 std::string point_folder(const PointResult& point);
 
 /// Magma on values divided by `full_scale`, as a picture to look at.

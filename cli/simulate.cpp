@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "cli/cache.h"
+#include "cli/messages.h"
 #include "pipeline/scene/scene_source.h"
 
 namespace hwsim::cli {
@@ -21,11 +22,8 @@ int find_camera(const pipeline::Scene& scene, const std::string& text) {
   for (int i = 0; i < count; ++i)
     if (names[static_cast<size_t>(i)] == text) return i;
   if (error == std::errc() && end == text.data() + text.size() && index >= 0 && index < count) return index;
-  const std::string nearest = nearest_name(text, names);
-  throw InputError(Diagnostic{.code = "U009",
-                              .message = fmt::format("scene `{}` has no camera `{}`", scene.name, text),
-                              .hint = nearest.empty() ? "" : "did you mean `" + nearest + "`?",
-                              .help = fmt::format("cameras: index 0 to {}; names: {}", count - 1, fmt::join(names, ", "))});
+  fail("U009", fmt::format("scene `{}` has no camera `{}`", scene.name, text), did_you_mean(text, names),
+       fmt::format("cameras: index 0 to {}; names: {}", count - 1, fmt::join(names, ", ")));
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -46,7 +44,8 @@ Simulator::Simulator(const RunPlan& plan, LoadedScene loaded, const ReferenceIma
     : plan_(plan), loaded_(std::move(loaded)), reference_(reference), jobs_(jobs) {}
 
 std::shared_ptr<const pipeline::Emulation> Simulator::emulate(const algos::TechniqueChoice& technique,
-                                                              const GpuConfig& gpu, const ProgressFunction& progress,
+                                                              const GpuConfig& gpu,
+                                                              const ProgressFunction& progress,
                                                               bool& reused) {
   const std::string key = technique_text(technique, true) + "@" + functional_hash(gpu);
   reused = key == last_key_;
@@ -100,7 +99,8 @@ void check_invariants(const WorkTrace& trace, const FrameTiming& timing, const G
   }
   for (const std::string& sentence : check_timing(timing, trace, gpu)) violations += "\n  " + sentence;
   if (!violations.empty())
-    throw InternalError(fmt::format("technique {} on {} violates invariants:{}", trace.technique, gpu.id, violations));
+    throw InternalError(
+        fmt::format("technique {} on {} violates invariants:{}", trace.technique, gpu.id, violations));
 }
 
 }  // namespace hwsim::cli

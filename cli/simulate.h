@@ -12,7 +12,8 @@
 
 namespace hwsim::cli {
 
-/// A law that hwsim itself broke. Not the user's mistake: exit status 1, and the manifest is printed to attach.
+/// A law that hwsim itself broke. Not the user's mistake: exit status 1, and the manifest is printed to
+/// attach.
 class InternalError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -55,11 +56,13 @@ class Simulator {
  public:
   Simulator(const RunPlan& plan, LoadedScene loaded, const ReferenceImage* reference, int jobs);
   /// Throws InputError, or InternalError when an invariant is violated.
-  PointResult run(const algos::TechniqueChoice& technique, const GpuConfig& gpu, const ProgressFunction& progress);
+  PointResult run(const algos::TechniqueChoice& technique, const GpuConfig& gpu,
+                  const ProgressFunction& progress);
 
  private:
-  std::shared_ptr<const pipeline::Emulation> emulate(const algos::TechniqueChoice& technique, const GpuConfig& gpu,
-                                                     const ProgressFunction& progress, bool& reused);
+  std::shared_ptr<const pipeline::Emulation> emulate(const algos::TechniqueChoice& technique,
+                                                     const GpuConfig& gpu, const ProgressFunction& progress,
+                                                     bool& reused);
   void measure_image(PointResult& point);
 
   const RunPlan& plan_;

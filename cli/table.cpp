@@ -30,8 +30,8 @@ std::string csv_of(const Cell& cell) {
 
 /// Bytes that start a character in UTF-8, which is the width of all that hwsim prints.
 size_t display_columns(std::string_view text) {
-  return static_cast<size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+  return static_cast<size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
 std::string padded(const std::string& text, size_t columns, bool right) {
@@ -70,10 +70,14 @@ void append_row(std::string& out, const Table& table, const std::vector<std::vec
 
 std::string render_as(const Answer& answer, Format format) {
   switch (format) {
-    case Format::table: return answer.heading + to_text(answer.table) + answer.footing;
-    case Format::md: return answer.heading + to_markdown(answer.table) + answer.footing;
-    case Format::csv: return to_csv(answer.table);
-    case Format::json: break;
+    case Format::table:
+      return answer.heading + to_text(answer.table) + answer.footing;
+    case Format::md:
+      return answer.heading + to_markdown(answer.table) + answer.footing;
+    case Format::csv:
+      return to_csv(answer.table);
+    case Format::json:
+      break;
   }
   return (answer.json ? *answer.json : to_json(answer.table)).dump(2) + "\n";
 }

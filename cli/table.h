@@ -38,8 +38,8 @@ nlohmann::ordered_json to_json(const Table& table);  ///< an array of objects
 /// Digits that read back to the same value.
 std::string exact(double value);
 
-/// Writes each requested shape of an answer. `json` is what JSON shows, `text` and the others come from the table;
-/// `heading` stands above and `footing` below the table in text and Markdown.
+/// Writes each requested shape of an answer. `json` is what JSON shows, `text` and the others come from the
+/// table; `heading` stands above and `footing` below the table in text and Markdown.
 struct Answer {
   Table table{};
   std::string heading{}, footing{};

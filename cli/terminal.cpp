@@ -19,7 +19,9 @@ bool is_dumb() {
   return term != nullptr && std::string_view(term) == "dumb";
 }
 
-bool decide(When when, bool automatic) { return when == When::always || (when == When::automatic && automatic); }
+bool decide(When when, bool automatic) {
+  return when == When::always || (when == When::automatic && automatic);
+}
 
 void write_error(const std::string& text) {
   std::fwrite(text.data(), 1, text.size(), stderr);

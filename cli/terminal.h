@@ -23,8 +23,8 @@ Terminal inspect_terminal(const CommonOptions& options);
 class Log {
  public:
   Log(const CommonOptions& options, const Terminal& terminal);
-  void say(const std::string& line);      ///< not with --quiet
-  void detail(const std::string& line);   ///< with --verbose
+  void say(const std::string& line);     ///< not with --quiet
+  void detail(const std::string& line);  ///< with --verbose
   void report(const Diagnostic& diagnostic);
   const std::string& text() const { return text_; }
 
