@@ -40,6 +40,18 @@ LoadedScene load_view(const ViewPlan& view) {
   return loaded;
 }
 
+algos::FrameRequest frame_request(const ViewPlan& view, const LoadedScene& loaded) {
+  algos::FrameRequest request;
+  request.scene = loaded.scene;
+  request.width_px = view.resolution.width_px;
+  request.height_px = view.resolution.height_px;
+  request.camera = loaded.camera;
+  request.point_lights = view.point_lights;
+  request.shadows = view.shadows;
+  request.shadow_map_px = view.shadow_map_px;
+  return request;
+}
+
 Simulator::Simulator(const RunPlan& plan, LoadedScene loaded, const ReferenceImage* reference, int jobs)
     : plan_(plan), loaded_(std::move(loaded)), reference_(reference), jobs_(jobs) {}
 
@@ -50,14 +62,7 @@ std::shared_ptr<const pipeline::Emulation> Simulator::emulate(const algos::Techn
   const std::string key = technique_text(technique, true) + "@" + functional_hash(gpu);
   reused = key == last_key_;
   if (reused) return last_emulation_;
-  algos::FrameRequest request;
-  request.scene = loaded_.scene;
-  request.width_px = plan_.view.resolution.width_px;
-  request.height_px = plan_.view.resolution.height_px;
-  request.camera = loaded_.camera;
-  request.point_lights = plan_.view.point_lights;
-  request.shadows = plan_.view.shadows;
-  request.shadow_map_px = plan_.view.shadow_map_px;
+  algos::FrameRequest request = frame_request(plan_.view, loaded_);
   request.features = gpu.features;
   request.functional = gpu.functional;
   const pipeline::FrameGraph graph = technique.info->build(request, technique.parameters);

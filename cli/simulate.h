@@ -27,6 +27,9 @@ struct LoadedScene {
 /// Loads the scene and finds the camera by name or index. Throws InputError.
 LoadedScene load_view(const ViewPlan& view);
 
+/// The frame without a GPU: features and limits are still to be set.
+algos::FrameRequest frame_request(const ViewPlan& view, const LoadedScene& loaded);
+
 struct ReferenceImage {
   pipeline::Image image;
   int samples = 0;
