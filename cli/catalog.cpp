@@ -57,7 +57,7 @@ Table gpu_catalog() {
                {"core_clock_mhz", "core MHz", true},
                {"dram_bandwidth_gb_s", "DRAM GB/s", true}},
               {}};
-  const std::string directory = config_directory();
+  const std::string directory = gpu_directory();
   for (const std::string& id : list_gpus(directory)) {
     const GpuConfig gpu = load_gpu(id, {}, {}, directory);
     table.rows.push_back(

@@ -52,7 +52,7 @@ void require(bool holds, const std::string& what) {
 }
 
 std::string check_configs() {
-  const std::string directory = config_directory();
+  const std::string directory = gpu_directory();
   const std::vector<std::string> ids = list_gpus(directory);
   require(!ids.empty(), "no GPU files in " + directory);
   for (const std::string& id : ids) load_gpu(id, {}, {}, directory);

@@ -81,7 +81,7 @@ std::optional<Answer> find_entry(const std::string& name) {
 }  // namespace
 
 ExitStatus show_entry(const ShowOptions& options, Context&) {
-  const std::string directory = config_directory();
+  const std::string directory = gpu_directory();
   const std::vector<std::string> gpus = list_gpus(directory);
   if (options.name.ends_with(".toml") || std::find(gpus.begin(), gpus.end(), options.name) != gpus.end()) {
     const GpuConfig gpu = load_gpu_from_options(options.name, options.overlays, options.sets);

@@ -45,6 +45,8 @@ std::string config_directory() {
        "", "install hwsim again, or set HWSIM_CONFIG_DIR to the folder that holds gpus");
 }
 
+std::string gpu_directory() { return (fs::path(config_directory()) / "gpus").string(); }
+
 std::string hash_hex(std::string_view bytes) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;

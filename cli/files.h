@@ -15,6 +15,8 @@ std::string read_file(const std::string& path);
 /// program's folder, else the source tree that it was built from. Throws InputError U012 when there is none.
 std::string config_directory();
 
+std::string gpu_directory();  ///< config_directory()/gpus
+
 /// 64-bit FNV-1a as 16 hex digits: names of cached files, ids of runs. Not for untrusted keys.
 std::string hash_hex(std::string_view bytes);
 

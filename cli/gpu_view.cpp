@@ -10,7 +10,7 @@ GpuConfig load_gpu_from_options(const std::string& name, const std::vector<std::
   std::vector<Assignment> assignments;
   for (const std::string& text : sets) assignments.push_back(parse_assignment(text));
   check_groups(assignments, std::vector<std::string>{"gpu"});
-  return load_gpu(name, overlays, assignments, config_directory());
+  return load_gpu(name, overlays, assignments, gpu_directory());
 }
 
 Table key_table(const GpuConfig& gpu, bool with_origin) {

@@ -148,7 +148,7 @@ std::vector<GpuConfig> plan_gpus(const std::vector<std::string>& names,
                                  const std::vector<std::string>& overlays,
                                  const std::vector<Assignment>& sets, std::vector<Diagnostic>& problems) {
   std::vector<GpuConfig> gpus;
-  const std::string directory = config_directory();
+  const std::string directory = gpu_directory();
   for (const std::string& name : names) try {
       gpus.push_back(load_gpu(name, overlays, sets, directory));
     } catch (const InputError& error) {
