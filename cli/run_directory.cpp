@@ -53,14 +53,16 @@ RunDirectory::RunDirectory(const OutOptions& options, const std::string& id_sour
   check_free(final_, options.force);
   partial_ = final_.parent_path() / fmt::format(".{}.partial-{}", final_.filename().string(), getpid());
   std::error_code error;
-  if (final_.has_parent_path()) fs::create_directories(final_.parent_path(), error);
+  if (final_.has_parent_path()) made_parent_ = fs::create_directories(final_.parent_path(), error);
   if (!error) fs::create_directory(partial_, error);
   if (error) fail_to_write(final_, error);
 }
 
 RunDirectory::~RunDirectory() {
   std::error_code ignored;  // nothing more can be done for a folder that cannot be removed
-  if (!committed_) fs::remove_all(partial_, ignored);
+  if (committed_) return;
+  fs::remove_all(partial_, ignored);
+  if (made_parent_) fs::remove(final_.parent_path(), ignored);  // only when empty
 }
 
 void RunDirectory::commit() {

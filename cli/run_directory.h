@@ -28,7 +28,7 @@ class RunDirectory {
   void point_latest_here() const;
 
   std::filesystem::path final_, partial_;
-  bool replace_ = false, named_by_us_ = false, committed_ = false;
+  bool replace_ = false, named_by_us_ = false, made_parent_ = false, committed_ = false;
 };
 
 /// While it lives, SIGINT and SIGTERM remove `folder` (when not empty) and end the process with status 130 or

@@ -47,7 +47,7 @@ TEST(Show, OriginSaysWhereAValueWasSet) {
   for (const json& row : rows)
     if (row["key"] == "core_clock_mhz") {
       found = true;
-      EXPECT_EQ(row["value"], "1000");
+      EXPECT_EQ(row["value"], "1000.0");
       EXPECT_EQ(row["origin"], "--set");
     }
   EXPECT_TRUE(found);
