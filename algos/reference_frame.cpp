@@ -127,7 +127,8 @@ class ReferenceFrame {
     how.samples = options.samples;
     how.jobs = options.jobs;
     how.largest_sample_value = 1.0f;  // as each sample of an 8-bit target
-    // A sample stands for its share of the pixel, in textures too: mip levels chosen for whole pixels would blur twice.
+    // A sample stands for its share of the pixel, in textures too: mip levels chosen for whole pixels would
+    // blur twice.
     how.footprint_scale = 1.0f / std::sqrt(static_cast<float>(options.samples));
     how.progress = options.progress;
     return render_reference(scene, how, [&](std::span<const SurfaceHit> hits, std::span<glm::vec4> colors) {

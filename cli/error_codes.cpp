@@ -33,6 +33,11 @@ constexpr ErrorCode kCodes[] = {
     {"U014", "no such help topic", "`hwsim help` takes the code of a message or the name of a command."},
     {"U015", "damaged CSV", "Every record of a CSV file must have as many fields as its header."},
     {"U016", "unknown name", "`hwsim show` takes the name of a GPU, scene, technique, counter or table."},
+    {"T001", "unknown technique",
+     "`hwsim list techniques` lists the names; parameters follow after a colon."},
+    {"T002", "unknown parameter of a technique",
+     "A technique is written name:key=value,key=value; `hwsim show TECHNIQUE` lists its keys."},
+    {"T003", "bad value of a technique's parameter", "`hwsim show TECHNIQUE` lists ranges and choices."},
     {"X001", "internal error",
      "hwsim broke one of its own rules. That is never your input's fault: please report the message and the "
      "manifest."},

@@ -22,8 +22,10 @@ TEST_P(BadInput, EndsInItsStatusAndMessageAndWritesNothing) {
   const Workplace place;
   place.write("triangle.gltf", kTriangleGltf);
   place.write("cut.glb", std::string("glTF\2\0\0\0\377\0\0\0", 12));
-  place.write("bad.toml", "schema = 1\nkind = \"gpu\"\nid = \"bad\"\nextends = \"gtx980\"\ncore_clock_mzh = 1000\n");
-  place.write("bad_run.toml", "schema = 1\nkind = \"run\"\nscene = \"triangle.gltf\"\nwidht_px = 64\nheight_px = 0\n");
+  place.write("bad.toml",
+              "schema = 1\nkind = \"gpu\"\nid = \"bad\"\nextends = \"gtx980\"\ncore_clock_mzh = 1000\n");
+  place.write("bad_run.toml",
+              "schema = 1\nkind = \"run\"\nscene = \"triangle.gltf\"\nwidht_px = 64\nheight_px = 0\n");
   const std::string before = place.listing();
   const Outcome outcome = place.hwsim(GetParam().arguments);
   EXPECT_EQ(outcome.status, GetParam().status) << outcome.err;
@@ -45,7 +47,8 @@ const Mistake kMistakes[] = {
     {"ResolutionZero", "run triangle.gltf --resolution 0x0", 2, "U005", "1 to 16384"},
     {"ResolutionHuge", "run triangle.gltf --resolution 100000x100000", 2, "U005", "1 to 16384"},
     {"ResolutionNoNumber", "run triangle.gltf --resolution wide", 2, "U005", "WIDTHxHEIGHT"},
-    {"ResolutionOverflow", "run triangle.gltf --resolution 99999999999999999999x1", 2, "U005", "WIDTHxHEIGHT"},
+    {"ResolutionOverflow", "run triangle.gltf --resolution 99999999999999999999x1", 2, "U005",
+     "WIDTHxHEIGHT"},
     {"BadLights", "run triangle.gltf --lights 5000", 2, "U003", "--lights"},
     {"BadSamples", "run triangle.gltf --reference 0", 2, "U003", "--reference"},
     {"ListNothing", "list gpu", 2, "U003", "did you mean `gpus`"},
@@ -77,7 +80,8 @@ INSTANTIATE_TEST_SUITE_P(, BadInput, testing::ValuesIn(kMistakes),
 
 TEST(BadInputAtOnce, AllMistakesOfTheCommandLineAreReportedTogether) {
   const Workplace place;
-  const Outcome outcome = place.hwsim("run sponza_hall -t msaa5x -g gtx981 --engine quue --set gpu.core_clock_mhz=-1");
+  const Outcome outcome =
+      place.hwsim("run sponza_hall -t msaa5x -g gtx981 --engine quue --set gpu.core_clock_mhz=-1");
   EXPECT_EQ(outcome.status, 3);
   for (const char* code : {"T001", "C016", "U006"})
     EXPECT_NE(outcome.err.find(code), std::string::npos) << outcome.err;

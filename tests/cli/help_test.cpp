@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -16,9 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::vector<std::string> kCommands = {
-    "",       "run",          "reference",    "list",        "show",          "scene",       "scene check",
-    "config", "config check", "config show",  "config diff", "config schema", "doctor",      "help",
-    "cache",  "cache list",   "cache prune",  "completion"};
+    "",       "run",          "reference",   "list",        "show",          "scene",  "scene check",
+    "config", "config check", "config show", "config diff", "config schema", "doctor", "help",
+    "cache",  "cache list",   "cache prune", "completion"};
 
 std::vector<std::string> examples_of(const std::string& help) {
   std::vector<std::string> examples;
@@ -71,7 +71,8 @@ TEST(HelpTest, ComesWithinThirtyMilliseconds) {
   for (int i = 0; i < 10; ++i) {
     const auto start = std::chrono::steady_clock::now();
     ASSERT_EQ(place.hwsim("--help").status, 0);
-    best_ms = std::min(best_ms, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    best_ms = std::min(
+        best_ms, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
   }
   EXPECT_LT(best_ms, 30.0);
 }
@@ -82,19 +83,22 @@ TEST(HelpTest, ExplainsExactlyTheCodesThatTheSourcesUse) {
   std::set<std::string> used;
   for (const char* folder : {"hwsim", "pipeline", "algos", "cost_models", "cli"}) {
     if (!fs::exists(fs::path(HWSIM_SOURCE_DIR) / folder)) continue;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(fs::path(HWSIM_SOURCE_DIR) / folder)) {
+    for (const fs::directory_entry& entry :
+         fs::recursive_directory_iterator(fs::path(HWSIM_SOURCE_DIR) / folder)) {
       if (entry.path().extension() != ".cpp" || entry.path().filename() == "error_codes.cpp") continue;
       std::ifstream file(entry.path());
       std::ostringstream buffer;
       buffer << file.rdbuf();
       const std::string text = buffer.str();
-      for (std::sregex_iterator at(text.begin(), text.end(), code), end; at != end; ++at) used.insert((*at)[1]);
+      for (std::sregex_iterator at(text.begin(), text.end(), code), end; at != end; ++at)
+        used.insert((*at)[1]);
     }
   }
   const Workplace place;
   std::set<std::string> explained;
   for (const auto& row : nlohmann::json::parse(place.hwsim("help --json").out)) explained.insert(row["code"]);
-  EXPECT_EQ(used, explained);
+  for (const std::string& each : used) EXPECT_TRUE(explained.contains(each)) << each << " is not explained";
+  for (const std::string& each : explained) EXPECT_TRUE(used.contains(each)) << each << " is used nowhere";
   for (const std::string& each : {std::string("C012"), std::string("u001")})
     EXPECT_EQ(place.hwsim("help " + each).status, 0) << each;
 }
@@ -116,8 +120,8 @@ TEST(CompletionTest, BashCompletesCommandsFlagsAndValues) {
   place.write("complete.bash", place.hwsim("completion bash").out);
   const auto complete = [&](const std::string& words, int index) {
     return place
-        .shell("bash -c 'source ./complete.bash; COMP_WORDS=(" + words + "); COMP_CWORD=" + std::to_string(index) +
-               "; _hwsim; echo \"${COMPREPLY[@]}\"'")
+        .shell("bash -c 'source ./complete.bash; COMP_WORDS=(" + words +
+               "); COMP_CWORD=" + std::to_string(index) + "; _hwsim; echo \"${COMPREPLY[@]}\"'")
         .out;
   };
   EXPECT_EQ(complete("hwsim refer", 1), "reference\n");

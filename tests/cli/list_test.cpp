@@ -36,7 +36,7 @@ TEST(List, PublishedTablesAreReadByRfc4180) {
   const json rows = json::parse(place.hwsim("show t --json", "HWSIM_CONFIG_DIR=configs").out);
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0]["a"], "x \"y\"");
-  EXPECT_EQ(rows[0]["b,c"], "two\nlines");
+  EXPECT_EQ(rows[0]["b,c"], "two\r\nlines");
   EXPECT_EQ(json::parse(place.hwsim("list tables --json", "HWSIM_CONFIG_DIR=configs").out)[0]["rows"], 1);
 }
 

@@ -29,13 +29,14 @@ TEST_F(RunTest, JsonHasTheKeysOfTheContract) {
   const Outcome outcome = run("-t msaa4x --json --reference 1 --out result");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const json result = json::parse(outcome.out);
-  expect_keys(result, {"schema_version", "scene", "technique", "gpu", "engine", "resolution", "frame", "passes", "image",
-                       "emulation", "timing"});
+  expect_keys(result, {"schema_version", "scene", "technique", "gpu", "engine", "resolution", "frame",
+                       "passes", "image", "emulation", "timing"});
   EXPECT_EQ(result["technique"], "msaa4x");
   EXPECT_EQ(result["gpu"], "gtx980");
   EXPECT_EQ(result["engine"], "queue");
   EXPECT_EQ(result["resolution"], json({64, 48}));
-  expect_keys(result["frame"], {"time_ms", "interval_ms", "support", "memory_mib", "dram_mb", "shaded_samples"});
+  expect_keys(result["frame"],
+              {"time_ms", "interval_ms", "support", "memory_mib", "dram_mb", "shaded_samples"});
   EXPECT_GT(result["frame"]["time_ms"], 0.0);
   expect_keys(result["image"], {"psnr_db", "flip_mean", "rmse"});
   expect_keys(result["emulation"], {"wall_s", "from_cache", "skipped"});
@@ -56,19 +57,21 @@ TEST_F(RunTest, JsonHasTheKeysOfTheContract) {
 TEST_F(RunTest, WritesTheFilesOfARunDirectory) {
   const Outcome outcome = run("-t none --reference 1 --out result");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(place.listing("result"),
-            "color.exr color.png counters.csv flip.exr flip.png gpu.toml heat_shading.png log.txt manifest.json "
-            "passes.csv reference.exr reference.png result.json run.toml trace.json");
+  EXPECT_EQ(
+      place.listing("result"),
+      "color.exr color.png counters.csv flip.exr flip.png gpu.toml heat_shading.png log.txt manifest.json "
+      "passes.csv reference.exr reference.png result.json run.toml trace.json");
   EXPECT_EQ(place.listing(), "result triangle.gltf") << "something partial was left";
   const json manifest = json::parse(place.read("result/manifest.json"));
-  expect_keys(manifest, {"version", "model_version", "commit", "compiler", "host", "argv", "overrides", "seed",
-                         "input_hashes", "wall_s", "fragments_per_s", "state"});
+  expect_keys(manifest, {"version", "model_version", "commit", "compiler", "host", "argv", "overrides",
+                         "seed", "input_hashes", "wall_s", "fragments_per_s", "state"});
   EXPECT_EQ(manifest["state"], "done");
 }
 
 TEST_F(RunTest, NoImageWritesNumbersOnly) {
   ASSERT_EQ(run("--no-image --out result").status, 0);
-  EXPECT_EQ(place.listing("result"), "counters.csv gpu.toml log.txt manifest.json passes.csv result.json run.toml trace.json");
+  EXPECT_EQ(place.listing("result"),
+            "counters.csv gpu.toml log.txt manifest.json passes.csv result.json run.toml trace.json");
 }
 
 TEST_F(RunTest, DefaultFolderIsLinkedAsLatest) {
@@ -90,7 +93,7 @@ TEST_F(RunTest, NumberOfThreadsChangesNoByte) {
   ASSERT_EQ(run("-t msaa4x --jobs 1 --out one").status, 0);
   ASSERT_EQ(run("-t msaa4x --jobs 3 --out three").status, 0);
   for (const char* file : {"/passes.csv", "/counters.csv", "/color.png", "/color.exr", "/trace.json"})
-    EXPECT_EQ(place.read(std::string("one") + file), place.read(std::string("three") + file)) << file;
+    EXPECT_TRUE(place.read(std::string("one") + file) == place.read(std::string("three") + file)) << file;
 }
 
 TEST_F(RunTest, TraceHasSlicesAndCountersOnly) {
@@ -140,8 +143,8 @@ TEST_F(RunTest, SeveralTechniquesGiveOneSummary) {
 
 TEST_F(RunTest, FasterMemoryIsNeverSlower) {
   const auto time_ms = [&](const std::string& bandwidth) {
-    const Outcome outcome =
-        run("-t msaa4x --json --no-image --set gpu.dram_bandwidth_gb_s=" + bandwidth + " --out bw" + bandwidth);
+    const Outcome outcome = run("-t msaa4x --json --no-image --set gpu.dram_bandwidth_gb_s=" + bandwidth +
+                                " --out bw" + bandwidth);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return json::parse(outcome.out)["frame"]["time_ms"].get<double>();
   };
@@ -169,7 +172,8 @@ TEST_F(RunTest, ForceReplacesNoFolderOfSomebodyElse) {
 
 TEST_F(RunTest, InterruptLeavesNothingAndEndsWith130) {
   const Outcome outcome = place.shell(
-      "hwsim run triangle.gltf -t ssaa16x,ssaa16x,ssaa16x --resolution 2048x2048 --reference 64 --out result & "
+      "hwsim run triangle.gltf -t ssaa16x,ssaa16x,ssaa16x --resolution 2048x2048 --reference 64 --out result "
+      "& "
       "sleep 0.7; kill -INT $!; wait $!");
   EXPECT_EQ(outcome.status, 130) << outcome.err;
   EXPECT_EQ(place.listing(), "triangle.gltf");
@@ -189,7 +193,8 @@ TEST(Color, IsAskedForRefusedAndForced) {
   EXPECT_NE(place.hwsim("run nothing.gltf --color always", "NO_COLOR=1").err.find('\033'), std::string::npos);
   // A terminal that script(1) makes; NO_COLOR and TERM=dumb are obeyed on it.
   const auto on_terminal = [&](const std::string& environment) {
-    return place.shell("script -qec '" + environment + " hwsim run nothing.gltf' /dev/null").out.find('\033') != std::string::npos;
+    return place.shell("script -qec '" + environment + " hwsim run nothing.gltf' /dev/null")
+               .out.find('\033') != std::string::npos;
   };
   if (place.shell("command -v script").status != 0) return;
   EXPECT_TRUE(on_terminal("TERM=xterm"));

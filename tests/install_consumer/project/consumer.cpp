@@ -12,7 +12,8 @@ int main(int argc, char** argv) {
   if (argc != 2) return 2;
   const std::string cache = (std::filesystem::temp_directory_path() / "hwsim-consumer").string();
   hwsim::algos::FrameRequest request;
-  request.scene = std::make_shared<const hwsim::pipeline::Scene>(hwsim::pipeline::open_scene("grass:blades=100", cache));
+  request.scene =
+      std::make_shared<const hwsim::pipeline::Scene>(hwsim::pipeline::open_scene("grass:blades=100", cache));
   request.width_px = 64;
   request.height_px = 48;
   const hwsim::GpuConfig gpu = hwsim::load_gpu("gtx980", {}, {}, argv[1]);
