@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "cli/arguments.h"
+#include "cli/argument_values.h"
 #include "cli/files.h"
 #include "cli/help_texts.h"
 #include "cli/messages.h"
