@@ -68,6 +68,7 @@ class PointShader {
   const FragmentBatch& run(std::span<const QuadVaryings> points, std::span<const bool> front_facing) {
     FragmentBatch& b = *batch_;
     b.quad_count = static_cast<int>(points.size());
+    b.valid_lanes = 0;
     b.active_lanes = 0;
     b.discarded_lanes = 0;
     b.blocks.used = 0;
@@ -77,6 +78,7 @@ class PointShader {
       b.primitive[q] = 0;
       b.front_facing[q] = front_facing[q];
       b.quad_x[q] = b.quad_y[q] = 0;
+      b.valid_lanes |= std::uint64_t{0xf} << (4 * q);  // three helpers, for the derivatives
       b.active_lanes |= std::uint64_t{1} << (4 * q);
     }
     program_.run(b, uniforms_);
