@@ -89,7 +89,7 @@ glm::mat4 shadow_clip_from_world(const Scene& scene, const glm::vec3& to_light) 
 DrawBatch depth_batch(const glm::mat4& clip_from_world, const std::vector<DrawCall>& draws, bool alpha_test) {
   DrawBatch batch;
   batch.state.depth = {true, true, Compare::less};
-  batch.state.raster.cull = CullMode::back;
+  batch.state.raster.cull = CullMode::none;  // both sides of a surface cast shadows, as for the reference's rays
   batch.vertex = alpha_test ? &mesh_uv_program() : &mesh_position_program();
   batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{clip_from_world});
   if (alpha_test) {
