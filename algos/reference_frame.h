@@ -1,6 +1,5 @@
 #pragma once
-// The ground truth of a frame: rays instead of rasterization, shaded by the program of the forward pass
-// itself, with shadow rays instead of a shadow map.
+// The ground truth of a frame: rays instead of rasterization and of a shadow map, the same materials and lights.
 #include <functional>
 
 #include "algos/technique.h"
@@ -15,7 +14,7 @@ struct ReferenceFrameOptions {
 };
 
 /// Raised when the same request gives another image: part of the key of cached references.
-inline constexpr int kReferenceVersion = 1;
+inline constexpr int kReferenceVersion = 2;
 
 pipeline::Image render_reference_frame(const FrameRequest& request, const ReferenceFrameOptions& options);
 

@@ -55,13 +55,13 @@ void rasterize(const pipeline::RasterTriangle& t, std::span<const pipeline::Samp
   const int left = std::max<int>(t.min_x, window.x) & ~7, top = std::max<int>(t.min_y, window.y) & ~7;
   const int right = std::min<int>(t.max_x, window.x + CoverageWindow::kSizePx - 1);
   const int bottom = std::min<int>(t.max_y, window.y + CoverageWindow::kSizePx - 1);
-  std::uint64_t masks[pipeline::kMaxSamples];
+  product::SampleMasks masks;
   for (int y = top; y <= bottom; y += 8) {
     for (int x = left; x <= right; x += 8) {
       if (!coverage.reaches(x, y)) continue;
-      std::fill(std::begin(masks), std::end(masks), ~std::uint64_t{0});
+      std::fill(std::begin(masks.lanes), std::end(masks.lanes), ~std::uint64_t{0});
       if (!coverage.covers_whole_tile()) coverage.masks(masks);
-      add_tile(masks, positions.size(), x - window.x, y - window.y, window);
+      add_tile(masks.lanes, positions.size(), x - window.x, y - window.y, window);
     }
   }
 }
