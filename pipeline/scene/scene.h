@@ -66,8 +66,8 @@ struct Material {
   ShadingModel model = ShadingModel::blinn_phong;
 };
 
-/// A vertex's wire center is its position, its outward direction the normal, its axis the tangent; radius in meters.
-/// Meshes without wires leave `radius` empty.
+/// Positions are on the surface. A wire's vertex has its center at position - radius * normal, its axis is the tangent;
+/// meshes without wires leave `radius` empty.
 struct Mesh {
   std::string name;
   std::vector<glm::vec3> positions;

@@ -91,6 +91,7 @@ class MeshBuilder {
 
   Mesh take() {
     mesh_.index_bytes = index_bytes_ ? index_bytes_ : 4;
+    place_wire_surfaces();
     set_bounds();
     return std::move(mesh_);
   }
@@ -252,10 +253,14 @@ class MeshBuilder {
     if (mesh_.positions.empty()) return;
     mesh_.bounds_min = mesh_.bounds_max = mesh_.positions.front();
     for (std::size_t i = 0; i < mesh_.positions.size(); ++i) {
-      const glm::vec3 reach(mesh_.radius.empty() ? 0.0f : mesh_.radius[i]);
-      mesh_.bounds_min = glm::min(mesh_.bounds_min, mesh_.positions[i] - reach);
-      mesh_.bounds_max = glm::max(mesh_.bounds_max, mesh_.positions[i] + reach);
+      mesh_.bounds_min = glm::min(mesh_.bounds_min, mesh_.positions[i]);
+      mesh_.bounds_max = glm::max(mesh_.bounds_max, mesh_.positions[i]);
     }
+  }
+
+  /// Files hold a wire's center line (techniques 6); everything but wire anti-aliasing draws its surface.
+  void place_wire_surfaces() {
+    for (std::size_t i = 0; i < mesh_.radius.size(); ++i) mesh_.positions[i] += mesh_.normals[i] * mesh_.radius[i];
   }
 
   Report& report_;
