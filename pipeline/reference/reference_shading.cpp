@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "pipeline/emulate/material_views.h"
 #include "pipeline/reference/reference.h"
@@ -67,7 +69,7 @@ class ScalarShading {
   // A light below the surface adds nothing: no ray is shot for it.
   F ray_visibility(glm::vec3 position, glm::vec3 normal) const {
     if (glm::dot(normal, to_shadowed_light_) <= 0.0f) return 0.0f;
-    return occluders_.sees_sky(position, to_shadowed_light_) ? 1.0f : 0.0f;
+    return occluders_.sees_sky(position, to_shadowed_light_, ShadowCasters::lit_sides) ? 1.0f : 0.0f;
   }
 
  private:
@@ -88,16 +90,31 @@ ScalarF shadow_visibility(ScalarShading& s, const LightingUniforms&, const Vec3<
   return s.ray_visibility({position.x.v, position.y.v, position.z.v}, {normal.x.v, normal.y.v, normal.z.v});
 }
 
-struct SceneShading {
+struct SceneMaterials {
   TextureStore textures;
-  MaterialViews materials;
+  MaterialViews views;
+  explicit SceneMaterials(const Scene& scene) : textures(scene), views(scene, textures) {}
+};
+
+AlphaLookup texture_alpha(std::shared_ptr<const SceneMaterials> materials) {
+  return [materials = std::move(materials)](const AlphaQuery& query) {
+    const MaterialView& material = materials->views.view(query.material);
+    const float alpha = material.base_color[3] * query.vertex_alpha;
+    const TextureView* texture = material.base_color_texture;
+    if (texture == nullptr) return alpha;
+    std::uint64_t probes = 0;
+    return alpha * ScalarSampler(*texture, nullptr, {true}).filter(query.uv0.x, query.uv0.y, 0.0f, probes).w.v;
+  };
+}
+
+struct SceneShading {
+  std::shared_ptr<const SceneMaterials> materials;
   LightingUniforms lighting;
   glm::vec3 to_shadowed_light{0.0f};
   bool full_varyings;
 
   SceneShading(const Scene& scene, const GroundTruthOptions& options)
-      : textures(scene),
-        materials(scene, textures),
+      : materials(std::make_shared<const SceneMaterials>(scene)),
         lighting(options.lighting
                      ? *options.lighting
                      : make_lighting(scene, scene.cameras.at(static_cast<std::size_t>(options.camera)))),
@@ -110,20 +127,11 @@ struct SceneShading {
   }
 
   glm::vec4 shade(const SurfaceHit& hit, const ReferenceScene& occluders) const {
-    ScalarShading s(hit, materials.view(hit.material), occluders, to_shadowed_light);
+    ScalarShading s(hit, materials->views.view(hit.material), occluders, to_shadowed_light);
     const MaterialSample<ScalarF> sample = sample_material(s, full_varyings);
     const Surface<ScalarF> surface = make_surface(sample, s.attr3(SurfaceVaryings::kPosition), lighting.eye);
     const Vec3<ScalarF> color = light_surface(s, lighting, surface, s.valid());
     return {color.x.v, color.y.v, color.z.v, sample.base.w.v};
-  }
-
-  float finest_alpha(const AlphaQuery& query) const {
-    const MaterialView& material = materials.view(query.material);
-    const float alpha = material.base_color[3] * query.vertex_alpha;
-    const TextureView* texture = material.base_color_texture;
-    if (texture == nullptr) return alpha;
-    std::uint64_t probes = 0;
-    return alpha * ScalarSampler(*texture, nullptr, {true}).filter(query.uv0.x, query.uv0.y, 0.0f, probes).w.v;
   }
 };
 
@@ -144,10 +152,13 @@ ReferenceOptions reference_options(const GroundTruthOptions& options) {
 
 }  // namespace
 
+AlphaLookup texture_alpha(const Scene& scene) {
+  return texture_alpha(std::make_shared<const SceneMaterials>(scene));
+}
+
 Image render_ground_truth(const Scene& scene, const GroundTruthOptions& options) {
   const SceneShading shading(scene, options);
-  const ReferenceScene traced(
-      scene, [&](const AlphaQuery& query) { return shading.finest_alpha(query); }, options.jobs);
+  const ReferenceScene traced(scene, texture_alpha(shading.materials), options.jobs);
   return render_reference(traced, reference_options(options),
                           [&](std::span<const SurfaceHit> hits, std::span<glm::vec4> colors) {
                             for (std::size_t i = 0; i < hits.size(); ++i)

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/image/image.h"
+#include "pipeline/reference/reference_scene.h"
 #include "pipeline/scene/scene.h"
 #include "pipeline/shade/lighting.h"
 
@@ -22,11 +23,14 @@ struct GroundTruthOptions {
   /// Of a pixel, for texture filtering. 0: 1 / sqrt(samples), so that the samples' footprints together fill the pixel.
   float footprint_scale = 0.0f;
   int jobs = 1;
-  bool shadows = true;  ///< rays to the shadow-casting directional light; no light else casts any
+  bool shadows = true;  ///< rays to the shadow-casting directional light, stopped by what a shadow map holds
   /// Those of the frame that is compared (algos::frame_lighting); its shadow map is not used. None: make_lighting.
   std::optional<LightingUniforms> lighting{};
   std::function<void(double done_ratio)> progress{};  ///< (0, 1], one thread at a time
 };
+
+/// Alpha as shaders compute it, base color textures at their finest level. The scene must live as long.
+AlphaLookup texture_alpha(const Scene& scene);
 
 /// Linear, alpha 1. Samples are clamped to 1 before they are averaged, as in an 8-bit multisampled target. Mask
 /// materials are cut out at their textures' finest level: alpha that is averaged before the test moves outlines.
