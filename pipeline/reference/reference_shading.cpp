@@ -84,7 +84,8 @@ class ScalarShading {
   std::array<float, SurfaceVaryings::kFull> varyings_{};
 };
 
-// light_surface finds this one by its argument (not const: as exact as the template) instead of the shadow map.
+// light_surface finds this one by its argument (not const: as exact as the template) instead of the shadow
+// map.
 ScalarF shadow_visibility(ScalarShading& s, const LightingUniforms&, const Vec3<ScalarF>& position,
                           const Vec3<ScalarF>& normal) {
   return s.ray_visibility({position.x.v, position.y.v, position.z.v}, {normal.x.v, normal.y.v, normal.z.v});
@@ -103,7 +104,8 @@ AlphaLookup texture_alpha(std::shared_ptr<const SceneMaterials> materials) {
     const TextureView* texture = material.base_color_texture;
     if (texture == nullptr) return alpha;
     std::uint64_t probes = 0;
-    return alpha * ScalarSampler(*texture, nullptr, {true}).filter(query.uv0.x, query.uv0.y, 0.0f, probes).w.v;
+    return alpha *
+           ScalarSampler(*texture, nullptr, {true}).filter(query.uv0.x, query.uv0.y, 0.0f, probes).w.v;
   };
 }
 
@@ -145,7 +147,8 @@ ReferenceOptions reference_options(const GroundTruthOptions& options) {
   reference.jobs = options.jobs;
   reference.largest_sample_value = 1.0f;
   const float samples = static_cast<float>(std::max(sample_count(reference), 1));
-  reference.footprint_scale = options.footprint_scale > 0.0f ? options.footprint_scale : 1.0f / std::sqrt(samples);
+  reference.footprint_scale =
+      options.footprint_scale > 0.0f ? options.footprint_scale : 1.0f / std::sqrt(samples);
   reference.progress = options.progress;
   return reference;
 }

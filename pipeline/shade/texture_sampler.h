@@ -16,7 +16,8 @@ class TextureSampler {
   TextureSampler(const TextureView& texture, TextureTracker* tracker, M valid)
       : texture_(texture), tracker_(tracker), valid_(valid), valid_bits_(mask_bits(valid)) {}
 
-  /// u, v with their derivatives for one pixel to the right and down. Adds probes beyond one a lane to `extra_probes`.
+  /// u, v with their derivatives for one pixel to the right and down. Adds probes beyond one a lane to
+  /// `extra_probes`.
   Vec4<F> sample(F u, F v, F du_dx, F dv_dx, F du_dy, F dv_dy, std::uint64_t& extra_probes) const {
     const F w(static_cast<float>(texture_.width[0])), h(static_cast<float>(texture_.height[0]));
     const F x2 = du_dx * w * (du_dx * w) + dv_dx * h * (dv_dx * h);
@@ -28,7 +29,8 @@ class TextureSampler {
     const F probes = max(floor(ratio + F(0.999f)), F(1.0f));
     const F lod = F(0.5f) * log2(major2) - log2(probes);
     const M x_major = x2 > y2;
-    return anisotropic(u, v, select(x_major, du_dx, du_dy), select(x_major, dv_dx, dv_dy), probes, lod, extra_probes);
+    return anisotropic(u, v, select(x_major, du_dx, du_dy), select(x_major, dv_dx, dv_dy), probes, lod,
+                       extra_probes);
   }
 
   /// One isotropic filter at a level of detail.
@@ -71,7 +73,8 @@ class TextureSampler {
     const I w = gather(texture_.width.data(), level), h = gather(texture_.height.data(), level);
     const F x = wrap(u, texture_.sampler.wrap_u) * to_float(w);
     const F y = wrap(v, texture_.sampler.wrap_v) * to_float(h);
-    const bool mag_linear = texture_.sampler.mag == Filter::linear, min_linear = texture_.sampler.min == Filter::linear;
+    const bool mag_linear = texture_.sampler.mag == Filter::linear,
+               min_linear = texture_.sampler.min == Filter::linear;
     if (!mag_linear && !min_linear) return nearest(x, y, w, h, level);
     const Vec4<F> smooth = bilinear(x, y, w, h, level);
     if (mag_linear && min_linear) return smooth;
@@ -84,13 +87,16 @@ class TextureSampler {
   /// To [0, 1] for repeat and mirror; clamped modes keep the coordinate, within bounds that an int holds.
   static F wrap(F c, Wrap mode) {
     switch (mode) {
-      case Wrap::repeat: return c - floor(c);
+      case Wrap::repeat:
+        return c - floor(c);
       case Wrap::mirrored_repeat: {
         const F t = c - F(2.0f) * floor(c * F(0.5f));
         return F(1.0f) - abs(F(1.0f) - t);
       }
-      case Wrap::clamp_to_edge: return saturate_coordinate(c, 0.0f, 1.0f);
-      case Wrap::clamp_to_border: return saturate_coordinate(c, -1.0f, 2.0f);
+      case Wrap::clamp_to_edge:
+        return saturate_coordinate(c, 0.0f, 1.0f);
+      case Wrap::clamp_to_border:
+        return saturate_coordinate(c, -1.0f, 2.0f);
     }
     return c;
   }

@@ -1,4 +1,5 @@
-// The ray-traced ground truth and the emulated ssaa16x frame are two ways to the same sixteen samples a pixel.
+// The ray-traced ground truth and the emulated ssaa16x frame are two ways to the same sixteen samples a
+// pixel.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -65,7 +66,7 @@ Scene textured_squares(Wrap wrap, int max_anisotropy) {
   material.emissive_texture.texture = 2;
   material.emissive = {0.1f, 0.05f, 0.2f};
   scene.materials = {material};
-  scene.textures = {noise_texture(64, true, 1), noise_texture(32, false, 2), noise_texture(16, true, 3)};
+  scene.textures = {noise_texture(512, true, 1), noise_texture(256, false, 2), noise_texture(128, true, 3)};
   scene.samplers.resize(1);
   scene.samplers[0].wrap_u = scene.samplers[0].wrap_v = wrap;
   scene.samplers[0].max_anisotropy = max_anisotropy;
@@ -95,7 +96,8 @@ Pair both_ways(Scene scene, bool shadows, int point_lights) {
   options.shadows = shadows;
   options.lighting = frame_lighting(request);
   for (int i = 0; i < 16; ++i)
-    options.offsets_px.emplace_back(static_cast<float>(i % 4) / 4 - 0.375f, static_cast<float>(i / 4) / 4 - 0.375f);
+    options.offsets_px.emplace_back(static_cast<float>(i % 4) / 4 - 0.375f,
+                                    static_cast<float>(i / 4) / 4 - 0.375f);
   return {emulate(graph, request.features, request.functional, {}).color,
           render_ground_truth(*request.scene, options)};
 }
@@ -109,8 +111,11 @@ double psnr_db(const Pair& pair, const char* what) {
 // The rounding of the frame to 8 bits alone gives 58.9 dB.
 TEST(GroundTruth, OfTexturedSquaresEqualsTheSupersampledFrame) {
   EXPECT_GE(psnr_db(both_ways(textured_squares(Wrap::repeat, 1), false, 0), "squares, trilinear"), 55.0);
-  EXPECT_GE(psnr_db(both_ways(textured_squares(Wrap::mirrored_repeat, 8), false, 0), "squares, 8x anisotropic"), 55.0);
-  EXPECT_GE(psnr_db(both_ways(textured_squares(Wrap::clamp_to_edge, 1), false, 20), "squares, 20 lights"), 55.0);
+  EXPECT_GE(
+      psnr_db(both_ways(textured_squares(Wrap::mirrored_repeat, 8), false, 0), "squares, 8x anisotropic"),
+      55.0);
+  EXPECT_GE(psnr_db(both_ways(textured_squares(Wrap::clamp_to_edge, 1), false, 20), "squares, 20 lights"),
+            55.0);
 }
 
 TEST(GroundTruth, OfAHallEqualsTheSupersampledFrame) {

@@ -3,8 +3,8 @@
 
 namespace hwsim::oracle {
 
-/// Color 0: the number of the triangle in its pass, exact below 2^24. Over mesh_uv_program; takes no uniforms.
-/// `alpha_test`: discards below the material's cutoff.
+/// Color 0: the number of the triangle in its pass, exact below 2^24. Over mesh_uv_program; takes no
+/// uniforms. `alpha_test`: discards below the material's cutoff.
 const pipeline::FragmentProgram& id_program(bool alpha_test);
 
 struct SampleSpread {

@@ -1,5 +1,5 @@
-// Rays of Embree through every sample position against the emulated rasterizer: both must see the same triangle, except
-// where vertices rounded to 1/256 pixel move an edge over the sample.
+// Rays of Embree through every sample position against the emulated rasterizer: both must see the same
+// triangle, except where vertices rounded to 1/256 pixel move an edge over the sample.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -81,7 +81,8 @@ class IdFrame {
 
   DrawBatch batch(std::size_t alpha_test) const {
     const Camera& camera = scene_->cameras.front();
-    const glm::mat4 clip = clip_from_view(camera, static_cast<float>(kWidth) / kHeight) * camera.view_from_world;
+    const glm::mat4 clip =
+        clip_from_view(camera, static_cast<float>(kWidth) / kHeight) * camera.view_from_world;
     DrawBatch batch;
     batch.state.depth = {true, true, Compare::less};
     batch.vertex = &mesh_uv_program();
@@ -105,8 +106,8 @@ class IdFrame {
   std::uint32_t triangles_ = 0;
 };
 
-/// A triangle on the screen, exact but for double rounding, also where vertices are behind the camera: homogeneous
-/// pixel coordinates (x w, y w, w).
+/// A triangle on the screen, exact but for double rounding, also where vertices are behind the camera:
+/// homogeneous pixel coordinates (x w, y w, w).
 class Projected {
  public:
   Projected(const Scene& scene, const Seen& seen) {
@@ -117,7 +118,8 @@ class Projected {
                             glm::dmat4(camera.view_from_world) * glm::dmat4(instance.world_from_local);
     std::array<glm::dvec3, 3> v;
     for (std::size_t i = 0; i < 3; ++i) {
-      const glm::dvec4 p = clip * glm::dvec4(glm::dvec3(mesh.positions[mesh.indices[3 * seen.primitive + i]]), 1.0);
+      const glm::dvec4 p =
+          clip * glm::dvec4(glm::dvec3(mesh.positions[mesh.indices[3 * seen.primitive + i]]), 1.0);
       v[i] = {(p.w + p.x) * kWidth / 2.0, (p.w - p.y) * kHeight / 2.0, p.w};
     }
     for (std::size_t i = 0; i < 3; ++i) edges_[i] = glm::cross(v[(i + 1) % 3], v[(i + 2) % 3]);
@@ -189,8 +191,8 @@ class Classifier {
   Census census;
 
  private:
-  // Vertices move by up to 1/512 px in x and y, so edges by less than 1/256 px; and by the rounding of single-precision
-  // clip coordinates, some 1e-7 of the image's width.
+  // Vertices move by up to 1/512 px in x and y, so edges by less than 1/256 px; and by the rounding of
+  // single-precision clip coordinates, some 1e-7 of the image's width.
   static constexpr double kEdgePx = 1.0 / 256 + 640 * 4e-7;
   // Relative. dragon_small.glb holds some triangles twice: rays and rasterizer keep different ones of a pair.
   static constexpr double kTie = 1e-4;
@@ -208,11 +210,13 @@ class Classifier {
     return census.other;
   }
 
-  void report(const Seen& emulated, const Seen& traced, const std::vector<Projected>& triangles, glm::dvec2 at) {
+  void report(const Seen& emulated, const Seen& traced, const std::vector<Projected>& triangles,
+              glm::dvec2 at) {
     ++reported_;
     std::printf("  other at (%.4f, %.4f): emulated %d/%u, traced %d/%u;", at.x, at.y, emulated.instance,
                 emulated.primitive, traced.instance, traced.primitive);
-    for (const Projected& t : triangles) std::printf(" %.6f px inside at %.6f m;", t.inside_px(at), t.distance_m(at));
+    for (const Projected& t : triangles)
+      std::printf(" %.6f px inside at %.6f m;", t.inside_px(at), t.distance_m(at));
     std::printf("\n");
   }
 
@@ -237,7 +241,8 @@ Census compare_visibility(std::shared_ptr<const Scene> scene) {
   options.jobs = 2;
   for (const SamplePosition& p : standard_sample_positions(kSamples))
     options.offsets_px.emplace_back(static_cast<float>(p.x) / 16, static_cast<float>(p.y) / 16);
-  const std::vector<Visibility> traced = trace_visibility(ReferenceScene(*scene, texture_alpha(*scene), 2), options);
+  const std::vector<Visibility> traced =
+      trace_visibility(ReferenceScene(*scene, texture_alpha(*scene), 2), options);
   const std::vector<Seen> emulated = IdFrame(scene).emulate_samples();
   Classifier classifier(*scene);
   for (std::size_t i = 0; i < traced.size(); ++i) {
@@ -253,11 +258,12 @@ Census compare_visibility(std::shared_ptr<const Scene> scene) {
 
 void expect_same_visibility(const std::string& name, const std::string& cache) {
   const Census c = compare_visibility(without_mip_levels(open_scene(name, cache)));
-  std::printf("%s: %llu samples, %.4f %% equal (%.4f %% off edges); edge %llu, tie %llu, alpha %llu, other %llu\n",
-              std::filesystem::path(name).filename().c_str(), static_cast<unsigned long long>(c.samples),
-              c.agreement_pct(), c.agreement_off_edges_pct(), static_cast<unsigned long long>(c.edge),
-              static_cast<unsigned long long>(c.tie), static_cast<unsigned long long>(c.alpha),
-              static_cast<unsigned long long>(c.other));
+  std::printf(
+      "%s: %llu samples, %.4f %% equal (%.4f %% off edges); edge %llu, tie %llu, alpha %llu, other %llu\n",
+      std::filesystem::path(name).filename().c_str(), static_cast<unsigned long long>(c.samples),
+      c.agreement_pct(), c.agreement_off_edges_pct(), static_cast<unsigned long long>(c.edge),
+      static_cast<unsigned long long>(c.tie), static_cast<unsigned long long>(c.alpha),
+      static_cast<unsigned long long>(c.other));
   EXPECT_EQ(c.samples, std::uint64_t{kWidth} * kHeight * kSamples);
   EXPECT_EQ(c.equal + c.edge + c.tie + c.alpha + c.other, c.samples);
   EXPECT_GE(c.agreement_pct(), 99.9) << name;

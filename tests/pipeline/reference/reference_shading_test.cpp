@@ -16,7 +16,8 @@ constexpr float kPi = std::numbers::pi_v<float>;
 
 Mesh square(float half_m, float z_m) {
   Mesh mesh;
-  mesh.positions = {{-half_m, -half_m, z_m}, {half_m, -half_m, z_m}, {half_m, half_m, z_m}, {-half_m, half_m, z_m}};
+  mesh.positions = {
+      {-half_m, -half_m, z_m}, {half_m, -half_m, z_m}, {half_m, half_m, z_m}, {-half_m, half_m, z_m}};
   mesh.normals.assign(4, {0, 0, 1});
   mesh.uv0 = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
   mesh.indices = {0, 1, 2, 0, 2, 3};
@@ -26,7 +27,8 @@ Mesh square(float half_m, float z_m) {
   return mesh;
 }
 
-// A dielectric plane of roughness 1 (exponent 0, so the lobe is 1/pi everywhere) at 4 m, lit along (0, 0.6, 0.8).
+// A dielectric plane of roughness 1 (exponent 0, so the lobe is 1/pi everywhere) at 4 m, lit along (0, 0.6,
+// 0.8).
 Scene lit_plane() {
   Scene scene;
   scene.meshes = {square(100.0f, -4.0f)};
@@ -107,7 +109,8 @@ TEST(GroundTruth, TakesTheLightsThatTheCallerAdds) {
   options.lighting = lighting;
   const float window = 1.0f - 0.25f * 0.25f;  // (d / range)^2 = 1/4
   expect_color(middle_of(scene, options),
-               kAlbedo * kAmbient + lit(kAlbedo, 1.0f, light.color * (window * window / 4.0f)), "point light");
+               kAlbedo * kAmbient + lit(kAlbedo, 1.0f, light.color * (window * window / 4.0f)),
+               "point light");
 }
 
 TEST(GroundTruth, ClampsSamplesBeforeItAveragesThem) {
