@@ -34,7 +34,7 @@ struct PartData {
   std::uint32_t first_primitive = 0;
 };
 
-enum class RayKind { camera, camera_without_blend, shadow, shadow_of_lit_sides };
+enum class RayKind { camera, camera_without_blend, shadow };
 
 // Embree hands the context to the filter; it must be the first member.
 struct Context {
@@ -56,16 +56,6 @@ bool is_front(const RTCRay& ray, float nx, float ny, float nz) {
   return ray.dir_x * nx + ray.dir_y * ny + ray.dir_z * nz < 0.0f;
 }
 
-// Whether the ray passes a side of a single-sided material. A shadow ray runs toward the light: a side that is turned
-// to its start is turned away from the light.
-bool passes_side(RayKind kind, bool front) {
-  switch (kind) {
-    case RayKind::shadow: return false;
-    case RayKind::shadow_of_lit_sides: return front;
-    default: return !front;
-  }
-}
-
 void filter(const RTCFilterFunctionNArguments* args) {
   if (args->valid[0] == 0) return;
   const auto& part = *static_cast<const PartData*>(args->geometryUserPtr);
@@ -75,7 +65,7 @@ void filter(const RTCFilterFunctionNArguments* args) {
   const Material& material = *part.material;
   const bool blended = material.alpha_mode == AlphaMode::blend && kind != RayKind::camera;
   const bool culled =
-      !material.double_sided && passes_side(kind, is_front(ray, hit.Ng_x, hit.Ng_y, hit.Ng_z));
+      !material.double_sided && kind != RayKind::shadow && !is_front(ray, hit.Ng_x, hit.Ng_y, hit.Ng_z);
   if (blended || culled ||
       (material.alpha_mode == AlphaMode::mask &&
        passes_mask(part, part.first_primitive + hit.primID, hit.u, hit.v)))
@@ -113,7 +103,7 @@ struct ReferenceScene::Impl {
   void build_mesh(std::size_t index);
   void attach_part(RTCScene target, RTCBuffer vertices, std::size_t mesh, std::size_t part);
   void build_top();
-  bool unoccluded(glm::vec3 from, glm::vec3 direction, float t_max, ShadowCasters casters) const;
+  bool unoccluded(glm::vec3 from, glm::vec3 direction, float t_max) const;
 };
 
 ReferenceScene::Impl::Impl(const Scene& s, AlphaLookup lookup, int jobs)
@@ -241,11 +231,10 @@ SurfaceHit ReferenceScene::surface(const Visibility& hit, const PixelRay& pixel)
   return interpolate_surface(impl_->scene, hit, pixel, impl_->world_normal_from_local[hit.instance]);
 }
 
-bool ReferenceScene::Impl::unoccluded(glm::vec3 from, glm::vec3 direction, float t_max,
-                                      ShadowCasters casters) const {
+bool ReferenceScene::Impl::unoccluded(glm::vec3 from, glm::vec3 direction, float t_max) const {
   const float largest = std::max({std::abs(from.x), std::abs(from.y), std::abs(from.z)});
   const float offset_m = shadow_offset_m + 4.0f * std::numeric_limits<float>::epsilon() * largest;
-  Context context{{}, casters == ShadowCasters::both_sides ? RayKind::shadow : RayKind::shadow_of_lit_sides};
+  Context context{{}, RayKind::shadow};
   rtcInitIntersectContext(&context.embree);
   const float offset_t = offset_m / glm::length(direction);
   RTCRay ray = embree_ray({from, direction, offset_t, t_max - offset_t});
@@ -254,12 +243,12 @@ bool ReferenceScene::Impl::unoccluded(glm::vec3 from, glm::vec3 direction, float
   return ray.tfar >= 0.0f;  // Embree answers "occluded" with minus infinity
 }
 
-bool ReferenceScene::visible(glm::vec3 from, glm::vec3 to, ShadowCasters casters) const {
-  return impl_->unoccluded(from, to - from, 1.0f, casters);
+bool ReferenceScene::visible(glm::vec3 from, glm::vec3 to) const {
+  return impl_->unoccluded(from, to - from, 1.0f);
 }
 
-bool ReferenceScene::sees_sky(glm::vec3 from, glm::vec3 direction, ShadowCasters casters) const {
-  return impl_->unoccluded(from, direction, std::numeric_limits<float>::infinity(), casters);
+bool ReferenceScene::sees_sky(glm::vec3 from, glm::vec3 direction) const {
+  return impl_->unoccluded(from, direction, std::numeric_limits<float>::infinity());
 }
 
 }  // namespace hwsim::pipeline

@@ -30,14 +30,6 @@ struct AlphaQuery {
 /// Called from several threads at a time.
 using AlphaLookup = std::function<float(const AlphaQuery&)>;
 
-/// Which sides of surfaces stop shadow rays.
-enum class ShadowCasters {
-  both_sides,
-  /// Of single-sided materials the side toward the light alone: what a shadow map holds that is drawn with back faces
-  /// culled, so that a wall without an outside lets the sun in.
-  lit_sides
-};
-
 /// A point on a surface, as shading needs it. World space, vectors of unit length.
 struct SurfaceHit {
   glm::vec3 position{0.0f};
@@ -73,10 +65,11 @@ class ReferenceScene {
   Visibility trace(const Ray& ray, bool with_blend = true) const;
   SurfaceHit surface(const Visibility& hit, const PixelRay& pixel) const;
 
-  /// Whether nothing casts a shadow from one point to the other, where the light is. Blended surfaces cast none.
-  bool visible(glm::vec3 from, glm::vec3 to, ShadowCasters casters = ShadowCasters::both_sides) const;
+  /// Whether nothing casts a shadow from one point to the other. Both sides of a surface cast one, blended
+  /// ones none.
+  bool visible(glm::vec3 from, glm::vec3 to) const;
   /// Likewise to infinity along a direction.
-  bool sees_sky(glm::vec3 from, glm::vec3 direction, ShadowCasters casters = ShadowCasters::both_sides) const;
+  bool sees_sky(glm::vec3 from, glm::vec3 direction) const;
 
  private:
   struct Impl;

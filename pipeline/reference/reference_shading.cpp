@@ -69,7 +69,7 @@ class ScalarShading {
   // A light below the surface adds nothing: no ray is shot for it.
   F ray_visibility(glm::vec3 position, glm::vec3 normal) const {
     if (glm::dot(normal, to_shadowed_light_) <= 0.0f) return 0.0f;
-    return occluders_.sees_sky(position, to_shadowed_light_, ShadowCasters::lit_sides) ? 1.0f : 0.0f;
+    return occluders_.sees_sky(position, to_shadowed_light_) ? 1.0f : 0.0f;
   }
 
  private:

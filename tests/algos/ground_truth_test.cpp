@@ -12,7 +12,7 @@
 #include "pipeline/reference/reference_shading.h"
 #include "pipeline/scene/mip_chain.h"
 #include "pipeline/scene/scene_source.h"
-#include "tests/pipeline/scene_glb.h"
+#include "pipeline/scene_glb.h"
 
 namespace hwsim::algos {
 namespace {

@@ -17,7 +17,7 @@
 #include "pipeline/reference/reference_shading.h"
 #include "pipeline/scene/scene_source.h"
 #include "pipeline/shade/mesh_vertex.h"
-#include "tests/pipeline/scene_glb.h"
+#include "pipeline/scene_glb.h"
 
 namespace hwsim::oracle {
 namespace {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
-#include <utility>
 
 #include "pipeline/scene/mip_chain.h"
 #include "pipeline/shade/scalar_lane.h"
@@ -80,19 +79,6 @@ TEST(GroundTruth, OfAShadowedPlaneIsAmbientUnlessShadowsAreOff) {
   expect_color(middle_of(scene, options), kAlbedo * kAmbient + lit(kAlbedo, 0.8f, kSun), "shadows off");
   scene.lights[0].casts_shadow = false;
   expect_color(middle_of(scene, {}), kAlbedo * kAmbient + lit(kAlbedo, 0.8f, kSun), "no caster");
-}
-
-TEST(GroundTruth, LetsTheSunThroughBacksThatAShadowMapCulls) {
-  Scene scene = lit_plane();
-  Mesh lid = square(0.5f, -3.0f);
-  for (glm::vec3& p : lid.positions) p.y += 0.75f;
-  std::swap(lid.indices[1], lid.indices[2]);
-  std::swap(lid.indices[4], lid.indices[5]);
-  scene.meshes.push_back(lid);
-  scene.instances.push_back({1, glm::mat4(1.0f), "lid with its back to the sun"});
-  expect_color(middle_of(scene, {}), kAlbedo * kAmbient + lit(kAlbedo, 0.8f, kSun), "single-sided");
-  scene.materials[0].double_sided = true;
-  expect_color(middle_of(scene, {}), kAlbedo * kAmbient, "double-sided");
 }
 
 TEST(GroundTruth, TakesTheLightsThatTheCallerAdds) {
