@@ -25,7 +25,7 @@ struct GroundTruthOptions {
   /// the pixel.
   float footprint_scale = 0.0f;
   int jobs = 1;
-  bool shadows = true;  ///< rays to the shadow-casting directional light, stopped by what a shadow map holds
+  bool shadows = true;  ///< rays to the shadow-casting directional light; no other light casts any
   /// Those of the frame that is compared (algos::frame_lighting); its shadow map is not used. None:
   /// make_lighting.
   std::optional<LightingUniforms> lighting{};

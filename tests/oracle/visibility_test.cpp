@@ -16,8 +16,8 @@
 #include "pipeline/reference/reference.h"
 #include "pipeline/reference/reference_shading.h"
 #include "pipeline/scene/scene_source.h"
-#include "pipeline/shade/mesh_vertex.h"
 #include "pipeline/scene_glb.h"
+#include "pipeline/shade/mesh_vertex.h"
 
 namespace hwsim::oracle {
 namespace {
