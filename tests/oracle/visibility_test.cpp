@@ -205,7 +205,9 @@ class Classifier {
         return census.alpha;
     if (triangles.size() == 2) {
       const double a = triangles[0].distance_m(at), b = triangles[1].distance_m(at);
-      if (std::fabs(a - b) < kTie * std::fabs(a)) return census.tie;
+      // Neighbors in one plane do not tie: both must cover the sample.
+      const bool both_cover = triangles[0].inside_px(at) > 0.0 && triangles[1].inside_px(at) > 0.0;
+      if (both_cover && std::fabs(a - b) < kTie * std::fabs(a)) return census.tie;
     }
     return census.other;
   }
