@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "pipeline/emulate/material_views.h"
 #include "pipeline/shade/mesh_vertex.h"
 
 namespace hwsim::algos {
@@ -88,7 +89,7 @@ glm::mat4 shadow_clip_from_world(const Scene& scene, const glm::vec3& to_light) 
 DrawBatch depth_batch(const glm::mat4& clip_from_world, const std::vector<DrawCall>& draws, bool alpha_test) {
   DrawBatch batch;
   batch.state.depth = {true, true, Compare::less};
-  batch.state.raster.cull = CullMode::back;
+  batch.state.raster.cull = CullMode::none;  // both sides of a surface cast shadows, as for the reference's rays
   batch.vertex = alpha_test ? &mesh_uv_program() : &mesh_position_program();
   batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{clip_from_world});
   if (alpha_test) {
@@ -123,11 +124,6 @@ void add_shadow_map(FrameGraph& graph, FrameParts& parts) {
   const glm::vec3 row(clip[0][0], clip[1][0], clip[2][0]);
   lighting.shadow_offset_m = 1.5f / (glm::length(row) * half);
   lighting.shadow_bias = 1e-4f;
-}
-
-bool needs_full_varyings(const Scene& scene) {
-  return std::any_of(scene.meshes.begin(), scene.meshes.end(),
-                     [](const Mesh& mesh) { return !mesh.tangents.empty() || !mesh.colors.empty(); });
 }
 
 DrawBatch surface_batch(const FrameParts& parts, const ForwardTarget& target, const std::vector<DrawCall>& draws,
@@ -175,6 +171,13 @@ PipelineState opaque_state(const ForwardTarget& target) {
   return state;
 }
 
+LightingUniforms frame_lighting(const FrameRequest& request) {
+  const Scene& scene = *request.scene;
+  LightingUniforms lighting = make_lighting(scene, scene.cameras.at(static_cast<std::size_t>(request.camera)));
+  add_point_lights(request, lighting);
+  return lighting;
+}
+
 FrameParts prepare_frame(FrameGraph& graph, const FrameRequest& request) {
   FrameParts parts;
   parts.request = &request;
@@ -184,8 +187,7 @@ FrameParts prepare_frame(FrameGraph& graph, const FrameRequest& request) {
   parts.clip_from_world = clip_from_view(parts.camera, aspect) * parts.camera.view_from_world;
   parts.draws = list_draws(scene, parts.camera);
   parts.full_varyings = needs_full_varyings(scene);
-  parts.lighting = make_lighting(scene, parts.camera);
-  add_point_lights(request, parts.lighting);
+  parts.lighting = frame_lighting(request);
   add_shadow_map(graph, parts);
   return parts;
 }

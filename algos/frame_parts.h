@@ -26,6 +26,10 @@ struct FrameParts {
   pipeline::ImageId shadow_map;  ///< none without a shadow caster
 };
 
+/// The scene's lights and the point lights of the request, without a shadow map: what the ray-traced reference of the
+/// same frame is lit by.
+pipeline::LightingUniforms frame_lighting(const FrameRequest& request);
+
 /// Adds the shadow map's passes, if there is a caster, and gathers the rest. Point lights of the request are added.
 FrameParts prepare_frame(pipeline::FrameGraph& graph, const FrameRequest& request);
 

@@ -42,7 +42,7 @@ function(hwsim_library name)
   set_target_properties(hwsim_${name} PROPERTIES EXPORT_NAME ${name} OUTPUT_NAME hwsim_${name}
                         POSITION_INDEPENDENT_CODE ON)
   target_include_directories(hwsim_${name} PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/hwsim>)
   target_compile_features(hwsim_${name} PUBLIC cxx_std_20)
   target_link_libraries(hwsim_${name} PRIVATE $<BUILD_INTERFACE:hwsim_options>)
 endfunction()

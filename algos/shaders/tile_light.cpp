@@ -224,7 +224,7 @@ class TileLighter {
     for (int wave = 0; wave < work_count_; wave += pipeline::kBatchLanes) {
       const int lanes_of_wave = std::min(pipeline::kBatchLanes, work_count_ - wave);
       for (int first = 0; first < lanes_of_wave; first += kVectorLanes) light_work(wave + first, first);
-      lanes::end_wave(g_, pipeline::kBatchLanes);
+      lanes::end_wave(g_, lanes_of_wave);
     }
   }
 

@@ -83,15 +83,16 @@ struct TileDepth {
 
 template <Compare kCompare, bool kWrite>
 void fine_test_of(const RasterTriangle& t, int x, int y, std::span<const SamplePosition> positions,
-                  const TileDepth& tile, std::uint64_t* masks) {
+                  const TileDepth& tile, SampleMasks& masks) {
   const float left = static_cast<float>(x - t.reference_x), top = static_cast<float>(y - t.reference_y);
+  masks.start();
   LaneI lowest(std::numeric_limits<std::int32_t>::max()), highest(0);
   for (std::size_t s = 0; s < positions.size(); ++s) {
     // Sums of multiples of 1/16 below 2^15: exact.
     const LaneF sample_x(left + 0.5f + static_cast<float>(positions[s].x) * 0.0625f);
     const LaneF sample_y(top + 0.5f + static_cast<float>(positions[s].y) * 0.0625f);
     auto* stored = reinterpret_cast<std::int32_t*>(tile.stored) + s * kBlockLanes;
-    const std::uint64_t covered = masks[s];
+    const std::uint64_t covered = masks.lanes[s];
     std::uint64_t passed = 0;
     for (int v = 0; v < kBlockVectors; ++v) {
       const int first = v * kVectorLanes;
@@ -107,7 +108,7 @@ void fine_test_of(const RasterTriangle& t, int x, int y, std::span<const SampleP
         highest = max(highest, now);
       }
     }
-    masks[s] = passed;
+    masks.set(s, passed);
   }
   if constexpr (kWrite) {
     *tile.tile_min = static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(DI(), lowest.v)));
@@ -117,7 +118,7 @@ void fine_test_of(const RasterTriangle& t, int x, int y, std::span<const SampleP
 
 template <bool kWrite>
 void fine_test_dispatch(Compare compare, const RasterTriangle& t, int x, int y,
-                        std::span<const SamplePosition> positions, const TileDepth& tile, std::uint64_t* masks) {
+                        std::span<const SamplePosition> positions, const TileDepth& tile, SampleMasks& masks) {
   switch (compare) {
     case Compare::less: return fine_test_of<Compare::less, kWrite>(t, x, y, positions, tile, masks);
     case Compare::equal: return fine_test_of<Compare::equal, kWrite>(t, x, y, positions, tile, masks);
@@ -132,7 +133,7 @@ void fine_test_dispatch(Compare compare, const RasterTriangle& t, int x, int y,
 
 /// The fine test of all covered samples: clears the bits of samples that fail, writes the others' depth if asked to.
 inline void fine_test(Compare compare, bool write, const RasterTriangle& t, int x, int y,
-                      std::span<const SamplePosition> positions, const TileDepth& tile, std::uint64_t* masks) {
+                      std::span<const SamplePosition> positions, const TileDepth& tile, SampleMasks& masks) {
   if (write) return fine_test_dispatch<true>(compare, t, x, y, positions, tile, masks);
   fine_test_dispatch<false>(compare, t, x, y, positions, tile, masks);
 }

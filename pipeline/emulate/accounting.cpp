@@ -9,23 +9,24 @@ struct BlockLanes {
   std::array<std::uint64_t, kSubgroupWidths.size()> issued{};
 };
 
-BlockLanes sum_trips(const std::array<std::int32_t, kBatchLanes>& trips, int lanes) {
+BlockLanes sum_trips(const std::array<std::int32_t, kBatchLanes>& trips, std::uint64_t valid_lanes) {
   BlockLanes sum;
   std::array<std::int32_t, kBatchLanes / 8> most{};
-  for (int lane = 0; lane < lanes; ++lane) {
-    const std::int32_t n = trips[static_cast<std::size_t>(lane)];
+  for (std::size_t lane = 0; lane < kBatchLanes; ++lane) {
+    const std::int32_t n = trips[lane];
     sum.active += static_cast<std::uint64_t>(n);
-    std::int32_t& group = most[static_cast<std::size_t>(lane / 8)];
-    group = n > group ? n : group;
+    most[lane / 8] = std::max(most[lane / 8], n);
   }
   for (std::size_t w = 0; w < kSubgroupWidths.size(); ++w) {
     const int width = kSubgroupWidths[w];
-    for (int first = 0; first < lanes; first += width) {
+    for (int first = 0; first < kBatchLanes; first += width) {
       std::int32_t highest = 0;
       for (int group = first / 8; group < (first + width) / 8; ++group)
         highest = std::max(highest, most[static_cast<std::size_t>(group)]);
+      const std::uint64_t in_subgroup =
+          width == 64 ? valid_lanes : valid_lanes >> first & ((std::uint64_t{1} << width) - 1);
       // A subgroup that the batch does not fill is charged for its share: the hardware fills it with other quads.
-      sum.issued[w] += static_cast<std::uint64_t>(highest) * static_cast<std::uint64_t>(std::min(width, lanes - first));
+      sum.issued[w] += static_cast<std::uint64_t>(highest) * static_cast<std::uint64_t>(__builtin_popcountll(in_subgroup));
     }
   }
   return sum;
@@ -59,27 +60,28 @@ bool tests_late(const PipelineState& state, const FragmentProgram* program) {
   return program->writes_storage || (program->can_discard && (state.depth.write || state.stencil.test));
 }
 
-void account_blocks(const BlockTrips& blocks, const BlockOps& ops, int block_count, int lanes, PassCounters& counters) {
+void account_blocks(const BlockTrips& blocks, const BlockOps& ops, int block_count, std::uint64_t valid_lanes,
+                    PassCounters& counters) {
   BlockLanes all;
-  all.active = static_cast<std::uint64_t>(lanes);
+  all.active = static_cast<std::uint64_t>(__builtin_popcountll(valid_lanes));
   all.issued.fill(all.active);
   charge(ops[0], all, counters);
   for (int block = 1; block < block_count; ++block) {
     if ((blocks.used >> block & 1u) == 0) continue;
-    charge(ops[static_cast<std::size_t>(block)], sum_trips(blocks.trips[static_cast<std::size_t>(block)], lanes),
+    charge(ops[static_cast<std::size_t>(block)], sum_trips(blocks.trips[static_cast<std::size_t>(block)], valid_lanes),
            counters);
   }
 }
 
 void account_shading(const FragmentBatch& batch, const FragmentProgram& program, bool sample_rate, PassCounters& c) {
-  const int lanes = 4 * batch.quad_count;
+  const auto lanes = static_cast<std::uint64_t>(__builtin_popcountll(batch.valid_lanes));
   const auto active = static_cast<std::uint64_t>(__builtin_popcountll(batch.active_lanes));
-  c.stats.fragment_shader_invocations += static_cast<std::uint64_t>(lanes);
+  c.stats.fragment_shader_invocations += lanes;
   c.ps.invocations += active;
-  c.ps.helper_invocations += static_cast<std::uint64_t>(lanes) - active;
+  c.ps.helper_invocations += lanes - active;
   if (sample_rate) c.ps.sample_rate_invocations += active;
   c.ps.discarded_invocations += static_cast<std::uint64_t>(__builtin_popcountll(batch.discarded_lanes));
-  account_blocks(batch.blocks, program.ops, program.block_count, lanes, c);
+  account_blocks(batch.blocks, program.ops, program.block_count, batch.valid_lanes, c);
   c.tex.bilinear_probes += batch.tex_bilinear_probes;
   c.tex.texels += batch.image_texels;
   c.mem.texture_read_bytes += batch.image_read_bytes;

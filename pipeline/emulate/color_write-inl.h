@@ -1,6 +1,8 @@
 // Encoding, blending and writing of shaded batches. Per-target include guard.
 #include "pipeline/emulate/fragment_setup-inl.h"
 #include "pipeline/emulate/pass_context.h"
+#include <cstring>
+
 #include "pipeline/shade/codec.h"
 #include "pipeline/shade/lanes-inl.h"
 
@@ -81,6 +83,17 @@ HWY_INLINE void store_quad(const std::int32_t* from, std::uint32_t mask, std::ui
   hn::BlendedStore(texels, hn::LoadMaskBits(d, bits), d, target);
 }
 
+/// Writes a tile's texels of one sample where `mask` says so.
+inline void store_tile(GpuImage& image, int block, int sample, std::uint64_t mask, const EncodedBatch& texels) {
+  auto* base = reinterpret_cast<std::int32_t*>(image.block(block)) + sample * image.words * kBlockLanes;
+  for (int w = 0; w < image.words; ++w) {
+    std::int32_t* to = base + w * kBlockLanes;
+    for (int first = 0; first < kBlockLanes; first += kVectorLanes)
+      hn::BlendedStore(load(texels.words[w] + first).v, hn::RebindMask(DI(), mask_from_bits(mask, first).v), DI(),
+                       to + first);
+  }
+}
+
 /// The target's texels at sample s under the batch's quads.
 inline void gather_target(GpuImage& image, const WriteTargets& to, int sample, EncodedBatch& out) {
   const D4I d;
@@ -93,11 +106,10 @@ inline void gather_target(GpuImage& image, const WriteTargets& to, int sample, E
   }
 }
 
-/// Blends (or masks channels of) a batch with the target's sample s and encodes the result.
-inline void blend_batch(GpuImage& image, const BlendState& state, const float (&color)[4][kBatchLanes],
-                        const WriteTargets& to, int sample, EncodedBatch& out) {
-  gather_target(image, to, sample, out);
-  for (int first = 0; first < 4 * to.count; first += kVectorLanes) {
+/// Texels `out.words` hold the target's values: replaced by the blended ones.
+inline void blend_lanes(const GpuImage& image, const BlendState& state, const float (&color)[4][kBatchLanes], int lanes,
+                        EncodedBatch& out) {
+  for (int first = 0; first < lanes; first += kVectorLanes) {
     LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
     for (int w = 0; w < image.words; ++w) words[w] = load(out.words[w] + first);
     const Vec4<LaneF> dst = decode_texel<LaneF, LaneI>(image.format, words, srgb_decode_table().data());
@@ -109,6 +121,21 @@ inline void blend_batch(GpuImage& image, const BlendState& state, const float (&
     if ((state.write_mask & 8) == 0) result.w = dst.w;
     encode_lanes(image.format, result, image.words, first, out);
   }
+}
+
+/// The same for a tile in place.
+inline void blend_tile(GpuImage& image, const BlendState& state, const float (&color)[4][kBatchLanes], int block,
+                       int sample, EncodedBatch& out) {
+  const auto* from = reinterpret_cast<const std::int32_t*>(image.block(block)) + sample * image.words * kBlockLanes;
+  for (int w = 0; w < image.words; ++w) std::memcpy(out.words[w], from + w * kBlockLanes, sizeof(out.words[w]));
+  blend_lanes(image, state, color, kBatchLanes, out);
+}
+
+/// Blends (or masks channels of) a batch with the target's sample s and encodes the result.
+inline void blend_batch(GpuImage& image, const BlendState& state, const float (&color)[4][kBatchLanes],
+                        const WriteTargets& to, int sample, EncodedBatch& out) {
+  gather_target(image, to, sample, out);
+  blend_lanes(image, state, color, 4 * to.count, out);
 }
 
 }  // namespace hwsim::pipeline::HWY_NAMESPACE

@@ -137,9 +137,14 @@ class FrameRunner {
   }
 
   void bind(const Pass& pass, ResourceView& resources) {
-    for (std::size_t i = 0; i < pass.sampled.size(); ++i) resources.images[i] = &image(pass.sampled[i]);
-    for (std::size_t i = 0; i < pass.targets.size() && i < resources.targets.size(); ++i)
+    for (std::size_t i = 0; i < pass.sampled.size(); ++i) {
+      image(pass.sampled[i]).use_all(options_.jobs);
+      resources.images[i] = &image(pass.sampled[i]);
+    }
+    for (std::size_t i = 0; i < pass.targets.size() && i < resources.targets.size(); ++i) {
+      image(pass.targets[i]).use_all(options_.jobs);
       resources.targets[i] = &image(pass.targets[i]);
+    }
     for (std::size_t i = 0; i < pass.storage.size(); ++i) {
       std::vector<std::uint32_t>& words = buffers_[static_cast<std::size_t>(pass.storage[i].index)];
       resources.buffers[i] = words.data();
@@ -216,7 +221,7 @@ class FrameRunner {
     std::uint64_t triangles = 0;
     for (DrawInfo& draw : c.draws) {
       draw.first_primitive = static_cast<std::uint32_t>(triangles);
-      triangles += draw.triangle_count();
+      triangles += draw.primitive_count();
     }
     c.chunk_primitives = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(triangles / 256, 32, 4096));
     start_workers(std::max<std::uint64_t>(1, (triangles + c.chunk_primitives - 1) / c.chunk_primitives), c);
@@ -225,7 +230,7 @@ class FrameRunner {
     std::uint32_t first = 0;
     while (first < c.draws.size()) {
       std::uint32_t last = first;
-      for (std::uint64_t n = 0; last < c.draws.size() && n < kSegmentTriangles; ++last) n += c.draws[last].triangle_count();
+      for (std::uint64_t n = 0; last < c.draws.size() && n < kSegmentTriangles; ++last) n += c.draws[last].primitive_count();
       Segment segment = make_segment(c, first, last);
       skipped_draws_ += run_geometry(c, segment, geometry, workers_);
       parallel_for(static_cast<std::size_t>(c.bins_x * c.bins_y), options_.jobs, [&](std::size_t bin, int worker) {
@@ -310,9 +315,10 @@ class FrameRunner {
   void run_transfer(const Pass& pass, PassWork& work) {
     std::vector<GpuImage*> targets;
     for (const ImageId id : pass.targets) targets.push_back(&image(id));
-    const GpuImage* source = pass.source ? &image(pass.source) : nullptr;
+    GpuImage* source = pass.source ? &image(pass.source) : nullptr;
+    if (source != nullptr) source->use_all(options_.jobs);
     for (GpuImage* target : targets) {
-      if (pass.kind == PassKind::clear) clear_image(*target, pass, options_.jobs);
+      if (pass.kind == PassKind::clear) clear_image(*target, pass);
       if (pass.kind == PassKind::copy) copy_image(*source, *target);
       if (pass.kind == PassKind::resolve) resolve_image(*source, *target, options_.jobs);
     }
@@ -321,12 +327,9 @@ class FrameRunner {
   }
 
   Image read_output() {
-    const GpuImage& from = image(graph_.output());
-    Image out(from.width, from.height);
-    parallel_for(static_cast<std::size_t>(out.height), options_.jobs, [&](std::size_t y, int) {
-      for (int x = 0; x < out.width; ++x) read_texel(from, x, static_cast<int>(y), 0, &out.at(x, static_cast<int>(y))[0]);
-    });
-    return out;
+    GpuImage& from = image(graph_.output());
+    from.use_all(options_.jobs);
+    return to_linear_image(from, options_.jobs);
   }
 
   Image read_heat() const {

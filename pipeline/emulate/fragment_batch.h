@@ -49,8 +49,9 @@ struct BlockTrips {
 };
 
 struct FragmentBatch {
-  int quad_count = 0;
-  std::uint64_t active_lanes = 0;  ///< fragments; the other lanes of the quads are helpers
+  int quad_count = 0;              ///< quads whose fields below are set
+  std::uint64_t valid_lanes = 0;   ///< lanes of quads that run, helpers included
+  std::uint64_t active_lanes = 0;  ///< of these, fragments
   int sample_index = -1;           ///< sample-rate shading: the sample; -1 at pixel rate
 
   // Of each quad

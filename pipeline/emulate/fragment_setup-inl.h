@@ -66,6 +66,56 @@ inline void centroid_offsets(const std::uint32_t* coverage, std::span<const Samp
 
 enum class AttributeLocation { center, centroid, sample };
 
+HWY_INLINE LaneF plane_at(const PlaneEquation& p, LaneF x, LaneF y) {
+  return (LaneF(p.base) + LaneF(p.ddy) * y) + LaneF(p.ddx) * x;
+}
+
+/// The same operations as `barycentrics` for a quad.
+HWY_INLINE void barycentrics(const RasterTriangle& t, LaneF x, LaneF y, float* b1, float* b2) {
+  const LaneF w = LaneF(1.0f) / plane_at(t.inv_w, x, y);
+  store(plane_at(t.l1_w, x, y) * w, b1);
+  store(plane_at(t.l2_w, x, y) * w, b2);
+}
+
+/// Offsets of the attribute location from the pixel centers for lanes [first, ...).
+HWY_INLINE void location_offsets(const FragmentBatch& batch, int first, AttributeLocation location,
+                                 std::span<const SamplePosition> positions, int sample, LaneF& dx, LaneF& dy) {
+  if (location == AttributeLocation::sample) {
+    const SamplePosition p = positions[static_cast<std::size_t>(sample)];
+    dx = LaneF(static_cast<float>(p.x) * 0.0625f);
+    dy = LaneF(static_cast<float>(p.y) * 0.0625f);
+    return;
+  }
+  HWY_ALIGN float x[kVectorLanes], y[kVectorLanes];
+  for (int lane = 0; lane < kVectorLanes; lane += 4)
+    centroid_offsets(batch.coverage.data() + first + lane, positions, x + lane, y + lane);
+  dx = load(x);
+  dy = load(y);
+}
+
+/// As set_up_quad, for the whole tile with corner (x, y) and one triangle.
+inline void set_up_tile(FragmentBatch& batch, int x, int y, AttributeLocation location,
+                        std::span<const SamplePosition> positions, int sample) {
+  const RasterTriangle* t = batch.triangle[0];
+  for (int first = 0; first < kBlockLanes; first += kVectorLanes) {
+    store(load(kLaneOffsets.x + first) + LaneI(x), batch.pixel_x.data() + first);
+    store(load(kLaneOffsets.y + first) + LaneI(y), batch.pixel_y.data() + first);
+    if (t == nullptr) continue;
+    // Quad corner, then lane, then half a pixel: integers and halves, exact in any order.
+    const LaneF px = load(kLaneOffsets.fx + first) + LaneF(static_cast<float>(x - t->reference_x) + 0.5f);
+    const LaneF py = load(kLaneOffsets.fy + first) + LaneF(static_cast<float>(y - t->reference_y) + 0.5f);
+    barycentrics(*t, px, py, batch.b1_center.data() + first, batch.b2_center.data() + first);
+    if (location == AttributeLocation::center) {
+      store(load(batch.b1_center.data() + first), batch.b1.data() + first);
+      store(load(batch.b2_center.data() + first), batch.b2.data() + first);
+      continue;
+    }
+    LaneF dx(0.0f), dy(0.0f);
+    location_offsets(batch, first, location, positions, sample, dx, dy);
+    barycentrics(*t, px + dx, py + dy, batch.b1.data() + first, batch.b2.data() + first);
+  }
+}
+
 /// Everything of quad `quad` of `batch` that a shader can ask for; its triangle and position are set already.
 HWY_INLINE void set_up_quad(FragmentBatch& batch, int quad, AttributeLocation location,
                             std::span<const SamplePosition> positions, int sample) {

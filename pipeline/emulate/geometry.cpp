@@ -113,35 +113,109 @@ class ItemBuilder {
     vertices_ = segment.vertices.data() + segment.vertex_base[local];
     varyings_ = segment.varyings.data() + segment.varying_base[local];
     stride_ = static_cast<std::size_t>(draw_.batch->vertex->varying_scalars);
-    rules_ = {draw_.cull_back, draw_.cull_front, context.width, context.height, context.sample_min_x,
+    const bool triangles = draw_.batch->state.raster.topology == Topology::triangles;
+    rules_ = {draw_.cull_back && triangles, draw_.cull_front && triangles, context.width, context.height, context.sample_min_x,
               context.sample_min_y, context.sample_max_x, context.sample_max_y, draw_.batch->state.raster.conservative};
   }
 
   void run() {
     item_.triangles.clear();
     item_.clipped_varyings.clear();
-    const std::uint32_t* indices = draw_.mesh->indices.data() + draw_.part->first_index + 3 * item_.first_triangle;
-    for (std::uint32_t i = 0; i < item_.triangle_count; ++i, indices += 3) {
-      primitive_ = draw_.first_primitive + item_.first_triangle + i;
+    const std::uint32_t step = draw_.indices_per_primitive();
+    const std::uint32_t* indices = draw_.mesh->indices.data() + draw_.part->first_index + step * item_.first_primitive;
+    for (std::uint32_t i = 0; i < item_.primitive_count; ++i, indices += step) {
+      primitive_ = draw_.first_primitive + item_.first_primitive + i;
       chunk_ = primitive_ / c_.chunk_primitives;
-      const std::uint32_t v[3] = {indices[0] - draw_.first_vertex, indices[1] - draw_.first_vertex,
-                                  indices[2] - draw_.first_vertex};
-      add(v);
+      const auto vertex = [&](int k) { return indices[k] - draw_.first_vertex; };
+      switch (draw_.batch->state.raster.topology) {
+        case Topology::triangles: add({vertex(0), vertex(1), vertex(2)}); break;
+        case Topology::points: add_point(vertex(0)); break;
+        case Topology::line_strip: add_line(vertex(0), vertex(1)); break;
+      }
     }
     bin();
   }
 
  private:
-  void add(const std::uint32_t (&v)[3]) {
+  using Vertices = std::array<std::uint32_t, 3>;
+
+  /// A quadrilateral in screen space, two triangles; corners in order around it, attributes of the vertices given.
+  void add_quad(const std::array<ScreenVertex, 4>& corner, const std::array<std::uint32_t, 4>& v, PassCounters& n) {
+    n.stats.clipping_primitives += 1;
+    for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
+      const ScreenVertex screen[3] = {corner[0], corner[i], corner[i + 1]};
+      set_up(screen, {v[0], v[i], v[i + 1]}, n);
+    }
+  }
+
+  void add_point(std::uint32_t v) {
+    PassCounters& n = chunks_[chunk_];
+    n.stats.input_assembly_primitives += 1;
+    n.stats.clipping_invocations += 1;
+    const ShadedVertex& vertex = vertices_[v];
+    if (vertex.outcode != 0) return cull_outside(n);  // by its center, as Direct3D does
+    const auto half = static_cast<std::int32_t>(std::lround(draw_.batch->state.raster.primitive_size_px * 0.5f * kSubpixelUnits));
+    std::array<ScreenVertex, 4> corner;
+    corner.fill(vertex.screen);
+    for (std::size_t i = 0; i < 4; ++i) {
+      corner[i].x += i == 1 || i == 2 ? half : -half;
+      corner[i].y += i >= 2 ? half : -half;
+    }
+    add_quad(corner, {v, v, v, v}, n);
+  }
+
+  void add_line(std::uint32_t a, std::uint32_t b) {
+    PassCounters& n = chunks_[chunk_];
+    n.stats.input_assembly_primitives += 1;
+    n.stats.clipping_invocations += 1;
+    if ((vertices_[a].outcode & vertices_[b].outcode) != 0) return cull_outside(n);
+    std::array<ClipVertex, kMaxClippedVertices> ends;
+    const int count = clip_triangle({clip_vertex(a, 0), clip_vertex(b, 1), clip_vertex(b, 1)}, band_, ends);
+    if (count < 3) return cull_outside(n);
+    // A triangle without width comes back as its clipped segment: the ends are the extremes of vertex 0's weight.
+    const auto [to, from] = std::minmax_element(
+        ends.begin(), ends.begin() + count,
+        [](const ClipVertex& p, const ClipVertex& q) { return p.weights[0] < q.weights[0]; });
+    if (from->position[3] <= 1e-30 || to->position[3] <= 1e-30) return cull_outside(n);
+    const auto first = clipped_count();
+    append_varyings({a, b, b}, from->weights);
+    append_varyings({a, b, b}, to->weights);
+    const ScreenVertex p = to_screen(from->position.data(), c_.width, c_.height);
+    const ScreenVertex q = to_screen(to->position.data(), c_.width, c_.height);
+    const double dx = q.x - p.x, dy = q.y - p.y, length = std::sqrt(dx * dx + dy * dy);
+    const double half = length > 0 ? draw_.batch->state.raster.primitive_size_px * 0.5 * kSubpixelUnits / length : 0.0;
+    const auto nx = static_cast<std::int32_t>(std::lround(-dy * half)), ny = static_cast<std::int32_t>(std::lround(dx * half));
+    const auto moved = [](ScreenVertex v, std::int32_t x, std::int32_t y) {
+      v.x += x;
+      v.y += y;
+      return v;
+    };
+    const std::uint32_t i = first | kClippedVertexBit, j = (first + 1) | kClippedVertexBit;
+    add_quad({moved(p, nx, ny), moved(q, nx, ny), moved(q, -nx, -ny), moved(p, -nx, -ny)}, {i, j, j, i}, n);
+  }
+
+  ClipVertex clip_vertex(std::uint32_t v, std::size_t corner) const {
+    ClipVertex out;
+    for (std::size_t k = 0; k < 4; ++k) out.position[k] = vertices_[v].clip_position[k];
+    out.weights[corner] = 1.0;
+    return out;
+  }
+
+  static void cull_outside(PassCounters& n) {
+    n.setup.in_primitives += 1;
+    n.setup.culled_frustum_primitives += 1;
+  }
+
+  std::uint32_t clipped_count() const {
+    return static_cast<std::uint32_t>(stride_ == 0 ? 0 : item_.clipped_varyings.size() / stride_);
+  }
+
+  void add(const Vertices& v) {
     PassCounters& n = chunks_[chunk_];
     const ShadedVertex &a = vertices_[v[0]], &b = vertices_[v[1]], &c = vertices_[v[2]];
     n.stats.input_assembly_primitives += 1;
     n.stats.clipping_invocations += 1;
-    if ((a.outcode & b.outcode & c.outcode) != 0) {
-      n.setup.in_primitives += 1;
-      n.setup.culled_frustum_primitives += 1;
-      return;
-    }
+    if ((a.outcode & b.outcode & c.outcode) != 0) return cull_outside(n);
     if (a.needs_clip || b.needs_clip || c.needs_clip) {
       add_clipped(v, n);
       return;
@@ -151,28 +225,19 @@ class ItemBuilder {
     set_up(screen, v, n);
   }
 
-  void add_clipped(const std::uint32_t (&v)[3], PassCounters& n) {
-    std::array<ClipVertex, 3> triangle;
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 4; ++k) triangle[i].position[k] = vertices_[v[i]].clip_position[k];
-      triangle[i].weights[i] = 1.0;
-    }
+  void add_clipped(const Vertices& v, PassCounters& n) {
     std::array<ClipVertex, kMaxClippedVertices> polygon;
-    const int count = clip_triangle(triangle, band_, polygon);
+    const int count = clip_triangle({clip_vertex(v[0], 0), clip_vertex(v[1], 1), clip_vertex(v[2], 2)}, band_, polygon);
     bool usable = count >= 3;
     for (int i = 0; i < count; ++i) usable = usable && polygon[static_cast<std::size_t>(i)].position[3] > 1e-30;
-    if (!usable) {
-      n.setup.in_primitives += 1;
-      n.setup.culled_frustum_primitives += 1;
-      return;
-    }
-    const auto first = static_cast<std::uint32_t>(stride_ == 0 ? 0 : item_.clipped_varyings.size() / stride_);
+    if (!usable) return cull_outside(n);
+    const std::uint32_t first = clipped_count();
     for (int i = 0; i < count; ++i) append_varyings(v, polygon[static_cast<std::size_t>(i)].weights);
     for (int i = 1; i + 1 < count; ++i) {
       const int fan[3] = {0, i, i + 1};
       ScreenVertex screen[3];
-      std::uint32_t index[3];
-      for (int k = 0; k < 3; ++k) {
+      Vertices index;
+      for (std::size_t k = 0; k < 3; ++k) {
         screen[k] = to_screen(polygon[static_cast<std::size_t>(fan[k])].position.data(), c_.width, c_.height);
         index[k] = (first + static_cast<std::uint32_t>(fan[k])) | kClippedVertexBit;
       }
@@ -181,7 +246,7 @@ class ItemBuilder {
     }
   }
 
-  void append_varyings(const std::uint32_t (&v)[3], const std::array<double, 3>& weights) {
+  void append_varyings(const Vertices& v, const std::array<double, 3>& weights) {
     for (std::size_t k = 0; k < stride_; ++k) {
       double value = 0.0;
       for (std::size_t i = 0; i < 3; ++i) value += weights[i] * varyings_[v[i] * stride_ + k];
@@ -189,7 +254,7 @@ class ItemBuilder {
     }
   }
 
-  void set_up(const ScreenVertex (&screen)[3], const std::uint32_t (&v)[3], PassCounters& n) {
+  void set_up(const ScreenVertex (&screen)[3], const Vertices& v, PassCounters& n) {
     n.setup.in_primitives += 1;
     RasterTriangle t;
     switch (set_up_triangle(screen, rules_, t)) {
@@ -199,7 +264,7 @@ class ItemBuilder {
       case SetupResult::drawn: break;
     }
     n.setup.out_primitives += 1;
-    for (int i = 0; i < 3; ++i) t.vertex[i] = v[i];
+    for (std::size_t i = 0; i < 3; ++i) t.vertex[i] = v[i];
     t.draw = item_.draw;
     t.chunk = chunk_;
     t.primitive = primitive_;
@@ -252,8 +317,8 @@ class ItemBuilder {
 
 // A draw outside the view volume: every triangle goes the way that `add` would send it.
 void count_outside(const PassContext& context, const GeometryItem& item, std::vector<PassCounters>& chunks) {
-  for (std::uint32_t i = 0; i < item.triangle_count; ++i) {
-    const std::uint32_t primitive = context.draws[item.draw].first_primitive + item.first_triangle + i;
+  for (std::uint32_t i = 0; i < item.primitive_count; ++i) {
+    const std::uint32_t primitive = context.draws[item.draw].first_primitive + item.first_primitive + i;
     PassCounters& n = chunks[primitive / context.chunk_primitives];
     n.stats.input_assembly_primitives += 1;
     n.stats.clipping_invocations += 1;
@@ -265,7 +330,7 @@ void count_outside(const PassContext& context, const GeometryItem& item, std::ve
 void count_vertices(const PassContext& context, const GeometryItem& item, std::uint32_t misses, PassCounters& n) {
   const DrawInfo& draw = context.draws[item.draw];
   const VertexProgram& program = *draw.batch->vertex;
-  const std::uint64_t indices = 3ull * item.triangle_count;
+  const std::uint64_t indices = std::uint64_t{draw.indices_per_primitive()} * item.primitive_count;
   n.stats.input_assembly_vertices += indices;
   n.stats.vertex_shader_invocations += misses;
   n.vs.alu_lane_ops += std::uint64_t{program.ops.alu} * misses;
@@ -293,15 +358,17 @@ std::vector<VertexTask> vertex_tasks(const PassContext& context, const Segment& 
 
 }  // namespace
 
-std::vector<std::uint32_t> count_cache_misses(const Mesh& mesh, const Mesh::Part& part, int cache_entries) {
-  std::vector<std::uint32_t> misses((part.index_count / 3 + kItemTriangles - 1) / kItemTriangles, 0);
+std::vector<std::uint32_t> count_cache_misses(const Mesh& mesh, const Mesh::Part& part,
+                                              std::uint32_t indices_per_primitive, int cache_entries) {
+  const std::uint32_t primitives = part.index_count / indices_per_primitive;
+  std::vector<std::uint32_t> misses((primitives + kItemPrimitives - 1) / kItemPrimitives + 1, 0);
   std::vector<std::uint64_t> loaded(mesh.positions.size(), 0);  // 1 + the miss by which the vertex came in last
   std::uint64_t total = 0;
   for (std::uint32_t i = 0; i < part.index_count; ++i) {
     std::uint64_t& at = loaded[mesh.indices[part.first_index + i]];
     if (at != 0 && total - at < static_cast<std::uint64_t>(cache_entries)) continue;
     at = ++total;
-    misses[i / (3 * kItemTriangles)] += 1;
+    misses[i / (indices_per_primitive * kItemPrimitives)] += 1;
   }
   return misses;
 }
@@ -317,11 +384,11 @@ Segment make_segment(const PassContext& context, std::uint32_t first, std::uint3
     segment.varying_base.push_back(scalars);
     vertices += draw.vertex_count;
     scalars += std::size_t{draw.vertex_count} * static_cast<std::size_t>(draw.batch->vertex->varying_scalars);
-    for (std::uint32_t t = 0; t < draw.triangle_count(); t += kItemTriangles) {
+    for (std::uint32_t t = 0; t < draw.primitive_count(); t += kItemPrimitives) {
       GeometryItem item;
       item.draw = d;
-      item.first_triangle = t;
-      item.triangle_count = std::min(kItemTriangles, draw.triangle_count() - t);
+      item.first_primitive = t;
+      item.primitive_count = std::min(kItemPrimitives, draw.primitive_count() - t);
       segment.items.push_back(std::move(item));
     }
   }
@@ -349,9 +416,9 @@ void count_vertex_work(const PassContext& context, const Segment& segment, int c
     const DrawInfo& draw = context.draws[item.draw];
     auto found = misses.find(draw.part);
     if (found == misses.end())
-      found = misses.emplace(draw.part, count_cache_misses(*draw.mesh, *draw.part, cache_entries)).first;
-    const std::uint32_t chunk = (draw.first_primitive + item.first_triangle) / context.chunk_primitives;
-    count_vertices(context, item, found->second[item.first_triangle / kItemTriangles], chunks[chunk]);
+      found = misses.emplace(draw.part, count_cache_misses(*draw.mesh, *draw.part, draw.indices_per_primitive(), cache_entries)).first;
+    const std::uint32_t chunk = (draw.first_primitive + item.first_primitive) / context.chunk_primitives;
+    count_vertices(context, item, found->second[item.first_primitive / kItemPrimitives], chunks[chunk]);
   }
 }
 

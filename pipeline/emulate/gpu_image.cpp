@@ -1,5 +1,8 @@
 #include "pipeline/emulate/gpu_image.h"
 
+#include <algorithm>
+
+#include "pipeline/base/parallel.h"
 #include "pipeline/shade/codec.h"
 #include "pipeline/shade/scalar_lane.h"
 #include "pipeline/shade/texture_view.h"
@@ -15,11 +18,26 @@ GpuImage::GpuImage(Format f, int w, int h, int s) : format(f), width(w), height(
   const auto blocks = static_cast<std::size_t>(blocks_x) * static_cast<std::size_t>(blocks_y);
   texels.resize(blocks * block_words());
   touched_chunk.resize(blocks);
+  cleared.resize(blocks);
   if (format_info.is_depth) {
     depth_min.resize(blocks);
     depth_max.resize(blocks);
   }
   if (format_info.has_stencil) stencil.resize(blocks * static_cast<std::size_t>(s * kBlockLanes));
+}
+
+void GpuImage::fill(int block_index) {
+  cleared[static_cast<std::size_t>(block_index)] = 0;
+  std::uint32_t* to = block(block_index);
+  for (int plane = 0; plane < samples * words; ++plane)
+    std::fill_n(to + plane * kBlockLanes, kBlockLanes, clear_words[static_cast<std::size_t>(plane % words)]);
+  if (!stencil.empty()) std::fill_n(stencil_block(block_index), samples * kBlockLanes, clear_stencil);
+}
+
+void GpuImage::use_all(int jobs) {
+  parallel_for(static_cast<std::size_t>(blocks_y), jobs, [&](std::size_t row, int) {
+    for (int bx = 0; bx < blocks_x; ++bx) use(static_cast<int>(row) * blocks_x + bx);
+  });
 }
 
 void read_texel(const GpuImage& image, int x, int y, int sample, float rgba[4]) {

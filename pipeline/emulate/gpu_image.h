@@ -1,5 +1,6 @@
 #pragma once
 // An image in simulated GPU memory.
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -32,8 +33,21 @@ struct GpuImage {
   std::vector<std::uint32_t> depth_min, depth_max;  ///< of each tile, depth formats only: bounds, exact after each draw
   std::vector<std::uint32_t> touched_chunk;         ///< of each tile: 1 + the last chunk of the current pass that used it
 
+  /// A clear only marks its tiles, as hardware's fast clear does; a tile is filled when it is first used.
+  std::vector<std::uint8_t> cleared;  ///< of each tile: 1 while its texels are still to be filled
+  std::array<std::uint32_t, 4> clear_words{};
+  std::uint8_t clear_stencil = 0;
+
   GpuImage() = default;
   GpuImage(Format f, int w, int h, int s);
+
+  /// Before a tile's texels are read or written.
+  void use(int block_index) {
+    if (cleared[static_cast<std::size_t>(block_index)] != 0) fill(block_index);
+  }
+  void fill(int block_index);
+  /// Before texels anywhere are read: fills what is still marked.
+  void use_all(int jobs);
 
   std::size_t block_words() const { return static_cast<std::size_t>(samples * words * kBlockLanes); }
   std::uint32_t* block(int block_index) { return texels.data() + static_cast<std::size_t>(block_index) * block_words(); }

@@ -49,6 +49,11 @@ MaterialView make_material_view(const Material& material, int index, const Textu
   return view;
 }
 
+bool needs_full_varyings(const Scene& scene) {
+  return std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                     [](const Mesh& mesh) { return !mesh.tangents.empty() || !mesh.colors.empty(); });
+}
+
 MaterialViews::MaterialViews(const Scene& scene, const TextureStore& textures) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     views_.push_back(make_material_view(scene.materials[i], static_cast<int>(i), textures));

@@ -9,9 +9,13 @@ namespace hwsim::pipeline {
 
 MaterialView make_material_view(const Material& material, int index, const TextureStore& textures);
 
+/// Whether some mesh has tangents or vertex colors; without, shaders are given SurfaceVaryings up to kBasic.
+bool needs_full_varyings(const Scene& scene);
+
 class MaterialViews {
  public:
   MaterialViews(const Scene& scene, const TextureStore& textures);
+  const MaterialView& view(int material) const { return views_[static_cast<std::size_t>(material)]; }
   std::vector<DrawInfo> make_draws(const Pass& pass, const Scene& scene) const;
 
  private:

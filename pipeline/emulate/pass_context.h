@@ -65,7 +65,8 @@ bool tests_late(const PipelineState& state, const FragmentProgram* program);
 
 /// Charges the batch's invocations and their blocks' operations.
 void account_shading(const FragmentBatch& batch, const FragmentProgram& program, bool sample_rate, PassCounters& counters);
-void account_blocks(const BlockTrips& blocks, const BlockOps& ops, int block_count, int lanes, PassCounters& counters);
+void account_blocks(const BlockTrips& blocks, const BlockOps& ops, int block_count, std::uint64_t valid_lanes,
+                    PassCounters& counters);
 
 /// Counts the use of a tile: once a chunk, and once a pass.
 template <class UnitCounters>

@@ -25,18 +25,26 @@ struct DrawInfo {
   bool cull_back = false;     ///< after double-sidedness and mirroring
   bool cull_front = false;
   std::uint32_t first_vertex = 0, vertex_count = 0;  ///< range of the mesh's vertices that the part uses
-  std::uint32_t first_primitive = 0;                 ///< number in the pass of its first triangle
-  std::uint32_t triangle_count() const { return part->index_count / 3; }
+  std::uint32_t first_primitive = 0;                 ///< number in the pass of its first primitive
+  std::uint32_t indices_per_primitive() const { return batch->state.raster.topology == Topology::triangles ? 3 : 1; }
+  std::uint32_t primitive_count() const {
+    switch (batch->state.raster.topology) {
+      case Topology::triangles: return part->index_count / 3;
+      case Topology::points: return part->index_count;
+      case Topology::line_strip: return part->index_count > 1 ? part->index_count - 1 : 0;
+    }
+    return 0;
+  }
 };
 
 /// Set high in RasterTriangle::vertex: the vertex was made by clipping and lies in the item's own array.
 inline constexpr std::uint32_t kClippedVertexBit = 0x80000000u;
 
-/// Up to kItemTriangles triangles of one draw.
-inline constexpr std::uint32_t kItemTriangles = 2048;
+/// Up to kItemPrimitives primitives of one draw.
+inline constexpr std::uint32_t kItemPrimitives = 2048;
 struct GeometryItem {
   std::uint32_t draw = 0;
-  std::uint32_t first_triangle = 0, triangle_count = 0;  ///< within the draw
+  std::uint32_t first_primitive = 0, primitive_count = 0;  ///< within the draw
 
   std::vector<RasterTriangle> triangles;
   std::vector<float> clipped_varyings;

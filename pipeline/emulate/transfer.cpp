@@ -36,42 +36,59 @@ void resolve_block(const GpuImage& from, GpuImage& to, int block) {
   }
 }
 
+/// Sample 0 of a tile, decoded: rgba[channel][lane].
+void decode_block(const GpuImage& from, int block, float (&rgba)[4][kBlockLanes]) {
+  const auto* source = reinterpret_cast<const std::int32_t*>(from.block(block));
+  for (int first = 0; first < kBlockLanes; first += kVectorLanes) {
+    LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
+    for (int w = 0; w < from.words; ++w) words[w] = load(source + w * kBlockLanes + first);
+    const Vec4<LaneF> c = decode_texel<LaneF, LaneI>(from.format, words, srgb_decode_table().data());
+    store(c.x, rgba[0] + first);
+    store(c.y, rgba[1] + first);
+    store(c.z, rgba[2] + first);
+    store(c.w, rgba[3] + first);
+  }
+}
+
 }  // namespace hwsim::pipeline::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace hwsim::pipeline {
 HWY_EXPORT(resolve_block);
+HWY_EXPORT(decode_block);
 
-namespace {
-
-void fill_words(GpuImage& image, const std::uint32_t (&words)[4], int jobs) {
-  parallel_for(static_cast<std::size_t>(image.blocks_y), jobs, [&](std::size_t row, int) {
-    for (int bx = 0; bx < image.blocks_x; ++bx) {
-      std::uint32_t* texels = image.block(static_cast<int>(row) * image.blocks_x + bx);
-      for (int plane = 0; plane < image.samples * image.words; ++plane)
-        std::fill_n(texels + plane * kBlockLanes, kBlockLanes, words[plane % image.words]);
+Image to_linear_image(const GpuImage& from, int jobs) {
+  Image out(from.width, from.height);
+  const auto decode = HWY_DYNAMIC_DISPATCH(decode_block);
+  parallel_for(static_cast<std::size_t>(from.blocks_y), jobs, [&](std::size_t row, int) {
+    float rgba[4][kBlockLanes];
+    for (int bx = 0; bx < from.blocks_x; ++bx) {
+      decode(from, static_cast<int>(row) * from.blocks_x + bx, rgba);
+      for (int lane = 0; lane < kBlockLanes; ++lane) {
+        const int x = bx * kBlockPx + lane_x(lane), y = static_cast<int>(row) * kBlockPx + lane_y(lane);
+        if (x < out.width && y < out.height)
+          out.at(x, y) = {rgba[0][lane], rgba[1][lane], rgba[2][lane], rgba[3][lane]};
+      }
     }
   });
+  return out;
 }
 
-}  // namespace
-
-void clear_image(GpuImage& image, const Pass& pass, int jobs) {
+void clear_image(GpuImage& image, const Pass& pass) {
+  image.clear_stencil = pass.clear_stencil;
+  std::fill(image.cleared.begin(), image.cleared.end(), 1);
   if (info(image.format).is_depth) {
     const std::uint32_t bits = depth_bits(pass.clear_depth, depth_scale(image.format));
-    fill_words(image, {bits, 0, 0, 0}, jobs);
+    image.clear_words = {bits, 0, 0, 0};
     std::fill(image.depth_min.begin(), image.depth_min.end(), bits);
     std::fill(image.depth_max.begin(), image.depth_max.end(), bits);
-    std::fill(image.stencil.begin(), image.stencil.end(), pass.clear_stencil);
     return;
   }
   const glm::vec4& c = pass.clear_color;
   ScalarI encoded[4] = {0, 0, 0, 0};
   encode_texel<ScalarF, ScalarI>(image.format, {c.x, c.y, c.z, c.w}, encoded);
-  std::uint32_t words[4];
-  for (int w = 0; w < 4; ++w) words[w] = static_cast<std::uint32_t>(encoded[w].v);
-  fill_words(image, words, jobs);
+  for (std::size_t w = 0; w < 4; ++w) image.clear_words[w] = static_cast<std::uint32_t>(encoded[w].v);
 }
 
 void copy_image(const GpuImage& from, GpuImage& to) {
@@ -79,12 +96,17 @@ void copy_image(const GpuImage& from, GpuImage& to) {
   to.stencil = from.stencil;
   to.depth_min = from.depth_min;
   to.depth_max = from.depth_max;
+  std::fill(to.cleared.begin(), to.cleared.end(), 0);
 }
 
 void resolve_image(const GpuImage& from, GpuImage& to, int jobs) {
   const auto resolve = HWY_DYNAMIC_DISPATCH(resolve_block);
   parallel_for(static_cast<std::size_t>(to.blocks_y), jobs, [&](std::size_t row, int) {
-    for (int bx = 0; bx < to.blocks_x; ++bx) resolve(from, to, static_cast<int>(row) * to.blocks_x + bx);
+    for (int bx = 0; bx < to.blocks_x; ++bx) {
+      const int block = static_cast<int>(row) * to.blocks_x + bx;
+      to.cleared[static_cast<std::size_t>(block)] = 0;
+      resolve(from, to, block);
+    }
   });
 }
 

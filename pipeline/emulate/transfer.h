@@ -4,13 +4,18 @@
 
 #include "pipeline/emulate/gpu_image.h"
 #include "pipeline/graph/frame_graph.h"
+#include "pipeline/image/image.h"
 
 namespace hwsim::pipeline {
 
-void clear_image(GpuImage& image, const Pass& pass, int jobs);
+void clear_image(GpuImage& image, const Pass& pass);
+/// Copies and resolves read every texel: use_all first.
 void copy_image(const GpuImage& from, GpuImage& to);
 /// The mean of all samples, taken in linear light; sums are in sample order.
 void resolve_image(const GpuImage& from, GpuImage& to, int jobs);
+
+/// Sample 0 of every pixel, decoded to linear RGBA.
+Image to_linear_image(const GpuImage& from, int jobs);
 
 /// Work of a transfer, in a chunk for each band of tiles.
 std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* source, std::span<GpuImage* const> targets);

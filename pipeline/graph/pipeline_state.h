@@ -10,7 +10,9 @@ enum class Compare : std::uint8_t { never, less, equal, less_equal, greater, not
 enum class StencilOp : std::uint8_t { keep, zero, replace, increment_saturate, decrement_saturate, invert, increment_wrap, decrement_wrap };
 enum class CullMode : std::uint8_t { none, back, front };
 enum class BlendFactor : std::uint8_t { zero, one, src_alpha, one_minus_src_alpha, dst_alpha, one_minus_dst_alpha, src_color, dst_color };
-enum class Topology : std::uint8_t { triangles, points };
+/// Points are squares of primitive_size_px centered on their vertex, never culled; line strips are rectangles of that
+/// width along each segment (wires that are drawn without geometry of their own).
+enum class Topology : std::uint8_t { triangles, points, line_strip };
 
 struct DepthState {
   bool test = false;
@@ -45,6 +47,7 @@ struct SamplePosition {
 
 struct RasterState {
   Topology topology = Topology::triangles;
+  float primitive_size_px = 1.0f;  ///< points and line strips
   CullMode cull = CullMode::back;
   bool conservative = false;  ///< every pixel that the triangle touches counts as wholly covered
   bool centroid = false;      ///< attributes of partly covered pixels are taken inside the triangle

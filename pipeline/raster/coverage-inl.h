@@ -41,6 +41,27 @@ HWY_INLINE void put_mask(LaneM m, int v, std::uint64_t& word) {
   word |= static_cast<std::uint64_t>(mask_bits(m)) << (v * kVectorLanes);
 }
 
+/// The covered samples of a tile: lanes[s] at sample s. Sums are taken while the masks are in registers: reading them
+/// back at once, eight bytes stored by thirty-two loaded, stalls on store forwarding.
+struct SampleMasks {
+  std::uint64_t lanes[kMaxSamples];
+  std::uint64_t any_lane = 0;  ///< union over the samples
+  std::uint64_t count = 0;     ///< bits set
+
+  HWY_INLINE void start() { any_lane = count = 0; }
+  HWY_INLINE void set(std::size_t s, std::uint64_t mask) {
+    lanes[s] = mask;
+    any_lane |= mask;
+    count += static_cast<std::uint64_t>(__builtin_popcountll(mask));
+  }
+  /// Keeps the lanes of `kept` at samples [first, last), nothing elsewhere.
+  void keep(std::uint64_t kept, int first, int last, int samples) {
+    start();
+    for (int s = 0; s < samples; ++s)
+      set(static_cast<std::size_t>(s), s >= first && s < last ? lanes[s] & kept : 0);
+  }
+};
+
 /// One triangle against the tiles of a bin.
 class TileCoverage {
  public:
@@ -71,8 +92,8 @@ class TileCoverage {
   }
   bool covers_whole_tile() const { return edge_count_ == 0; }
 
-  /// masks[s]: covered lanes at sample s, for a tile that edges cut.
-  void masks(std::uint64_t* masks) {
+  /// For a tile that edges cut.
+  void masks(SampleMasks& masks) {
     prepare_offsets();
     switch (edge_count_) {
       case 1: return masks_of<1>(masks);
@@ -94,7 +115,8 @@ class TileCoverage {
   }
 
   template <int kEdges>
-  void masks_of(std::uint64_t* masks) {
+  void masks_of(SampleMasks& masks) {
+    masks.start();
     for (std::size_t s = 0; s < positions_.size(); ++s) {
       LaneI threshold[kEdges];
       for (int e = 0; e < kEdges; ++e) {
@@ -109,7 +131,7 @@ class TileCoverage {
         for (int e = 1; e < kEdges; ++e) inside = inside & (load(offsets_[edge_[e]] + v * kVectorLanes) > threshold[e]);
         put_mask(inside, v, word);
       }
-      masks[s] = word;
+      masks.set(s, word);
     }
   }
 

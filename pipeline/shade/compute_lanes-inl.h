@@ -90,7 +90,8 @@ class ComputeLanes {
 
 /// Charges the blocks that a wave of `lanes` invocations went through, and starts the next wave.
 inline void end_wave(GroupBatch& group, int lanes) {
-  account_blocks(group.blocks, group.program->ops, group.program->block_count, lanes, *group.counters);
+  const std::uint64_t valid = lanes == kBatchLanes ? ~std::uint64_t{0} : (std::uint64_t{1} << lanes) - 1;
+  account_blocks(group.blocks, group.program->ops, group.program->block_count, valid, *group.counters);
   group.blocks.used = 0;
 }
 

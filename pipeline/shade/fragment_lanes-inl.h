@@ -4,7 +4,7 @@
 #include "pipeline/emulate/fragment_batch.h"
 #include "pipeline/shade/codec.h"
 #include "pipeline/shade/lanes-inl.h"
-#include "pipeline/shade/texture_sampler-inl.h"
+#include "pipeline/shade/texture_sampler.h"
 
 #if defined(HWSIM_SHADE_FRAGMENT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_SHADE_FRAGMENT_LANES_INL_H_
@@ -48,9 +48,7 @@ class FragmentLanes {
 
   FragmentLanes(FragmentBatch& batch, int first_lane)
       : batch_(batch), first_(first_lane),
-        valid_(mask_from_bits(batch.quad_count == kBatchQuads ? ~std::uint64_t{0}
-                                                              : (std::uint64_t{1} << (4 * batch.quad_count)) - 1,
-                              first_lane)),
+        valid_(mask_from_bits(batch.valid_lanes, first_lane)),
         active_(mask_from_bits(batch.active_lanes, first_lane)) {
     const int quads = batch.quad_count;
     const int first_quad = first_lane / 4;
@@ -85,7 +83,7 @@ class FragmentLanes {
 
   /// Filtered texture at attribute scalars (k, k + 1); level of detail from the derivatives at pixel centers.
   Vec4<F> sample_texture(const TextureView* texture, int k) {
-    const TextureSampler sampler(*texture, batch_.texture_tracker, valid_);
+    const TextureSampler<F, I, M> sampler(*texture, batch_.texture_tracker, valid_);
     const F uc = interpolate(k, batch_.b1_center.data(), batch_.b2_center.data());
     const F vc = interpolate(k + 1, batch_.b1_center.data(), batch_.b2_center.data());
     return sampler.sample(attr(k), attr(k + 1), ddx(uc), ddx(vc), ddy(uc), ddy(vc), batch_.tex_bilinear_probes);
@@ -179,8 +177,9 @@ class FragmentLanes {
 template <class Shader>
 void run_fragment_shader(FragmentBatch& batch, const void* uniforms) {
   const auto& typed = *static_cast<const typename Shader::Uniforms*>(uniforms);
-  const int lanes = 4 * batch.quad_count;
-  for (int first = 0; first < lanes; first += kVectorLanes) {
+  constexpr std::uint64_t kRegister = kVectorLanes == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << kVectorLanes) - 1;
+  for (int first = 0; first < kBatchLanes; first += kVectorLanes) {
+    if ((batch.valid_lanes >> first & kRegister) == 0) continue;
     FragmentLanes s(batch, first);
     Shader::run(s, typed);
   }

@@ -58,7 +58,11 @@ inline ScalarM operator<(ScalarI a, ScalarI b) { return {a.v < b.v}; }
 inline ScalarM operator>(ScalarI a, ScalarI b) { return {a.v > b.v}; }
 inline ScalarM operator==(ScalarI a, ScalarI b) { return {a.v == b.v}; }
 inline ScalarM operator!=(ScalarI a, ScalarI b) { return {a.v != b.v}; }
-inline ScalarI to_int(ScalarF a) { return static_cast<std::int32_t>(a.v); }
+/// Saturates by the sign, NaN too, as the lanes' conversion does; the language leaves it undefined.
+inline ScalarI to_int(ScalarF a) {
+  if (std::fabs(a.v) < 0x1p31f) return static_cast<std::int32_t>(a.v);
+  return std::signbit(a.v) ? INT32_MIN : INT32_MAX;
+}
 inline ScalarF to_float(ScalarI a) { return static_cast<float>(a.v); }
 inline ScalarF bits_to_float(ScalarI a) { return std::bit_cast<float>(a.v); }
 inline ScalarI float_to_bits(ScalarF a) { return std::bit_cast<std::int32_t>(a.v); }
@@ -66,5 +70,12 @@ inline ScalarF exp2(ScalarF a) { return exp2_polynomial<ScalarF, ScalarI>(a); }
 inline ScalarF log2(ScalarF a) { return log2_polynomial<ScalarF, ScalarI>(a); }
 inline ScalarF lookup(const float* table, ScalarI index) { return table[index.v]; }
 inline bool any(ScalarM m) { return m.v; }
+inline ScalarF gather(const float* base, ScalarI index) { return base[index.v]; }
+inline ScalarI gather(const std::int32_t* base, ScalarI index) { return base[index.v]; }
+inline std::uint32_t mask_bits(ScalarM m) { return m.v ? 1u : 0u; }
+template <class Body>
+void for_each_lane(ScalarI a, std::uint32_t bits, Body&& body) {
+  if (bits != 0) body(a.v);
+}
 
 }  // namespace hwsim::pipeline

@@ -86,6 +86,8 @@ int encode(const std::string& format, const void* rgb, int width, int height,
     OIIO::ImageSpec spec(width, height, 3, png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::HALF);
     spec.attribute("oiio:ColorSpace", png ? "sRGB" : "Linear");
     spec.attribute("compression", "zip");
+    // Otherwise OpenEXR files get the time of writing: the same image must give the same bytes.
+    spec.attribute("DateTime", "1970:01:01 00:00:00");
     const bool written = image->set_ioproxy(&writer) && image->open(png ? "image.png" : "image.exr", spec) &&
                          image->write_image(png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT, rgb) &&
                          image->close();

@@ -1,0 +1,22 @@
+#pragma once
+// The ground truth of a frame: rays instead of rasterization, shaded by the program of the forward pass
+// itself, with shadow rays instead of a shadow map.
+#include <functional>
+
+#include "algos/technique.h"
+#include "pipeline/image/image.h"
+
+namespace hwsim::algos {
+
+struct ReferenceFrameOptions {
+  int samples = 64;  ///< a pixel
+  int jobs = 1;
+  std::function<void(double share)> progress{};
+};
+
+/// Raised when the same request gives another image: part of the key of cached references.
+inline constexpr int kReferenceVersion = 1;
+
+pipeline::Image render_reference_frame(const FrameRequest& request, const ReferenceFrameOptions& options);
+
+}  // namespace hwsim::algos

@@ -1,0 +1,442 @@
+// CLI11 costs six seconds of compile time: it is named in this file only.
+#include "cli/arguments.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <sstream>
+#include <thread>
+
+#include "cli/argument_values.h"
+#include "cli/help_texts.h"
+#include "cli/messages.h"
+
+namespace hwsim::cli {
+namespace {
+
+/// A flag whose value is one of a few words.
+template <class T>
+void add_choice(CLI::App& app, const std::string& flag, std::string description,
+                std::map<std::string, T> choices, std::function<void(T)> set,
+                const std::string& environment = {}) {
+  std::vector<std::string> words;
+  for (const auto& [word, value] : choices) words.push_back(word);
+  CLI::Option* option = app.add_option_function<std::string>(
+      flag,
+      [=](const std::string& text) {
+        if (const auto found = choices.find(text); found != choices.end()) return set(found->second);
+        fail_usage("U003", flag + " is `" + text + "`, must be " + CLI::detail::join(words, ", "),
+                   did_you_mean(text, words));
+      },
+      std::move(description));
+  option->type_name(CLI::detail::join(words, "|"));
+  if (!environment.empty()) option->envname(environment);
+}
+
+/// A flag that may be given several times, with one value each time.
+CLI::Option* add_repeatable(CLI::App& app, const std::string& flag, std::vector<std::string>& target,
+                            std::string description, const std::string& type) {
+  return app.add_option(flag, target, std::move(description))->allow_extra_args(false)->type_name(type);
+}
+
+void add_common(CLI::App& app, CommonOptions& common) {
+  CLI::App* group = app.add_option_group("Output and progress");
+  group
+      ->add_option_function<std::vector<std::string>>(
+          "--format",
+          [&common](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) common.formats.push_back(parse_format(text));
+          },
+          "Shape of the answer; FORMAT=FILE writes it to a file (repeatable)")
+      ->allow_extra_args(false)
+      ->type_name("table|csv|json|md");
+  group->add_flag_callback(
+      "--json",
+      [&common] {
+        common.formats.push_back({Format::json, ""});
+      },
+      "--format json");
+  group->add_flag_callback(
+      "-q,--quiet", [&common] { common.verbosity = -1; }, "Only the answer and errors");
+  group->add_flag_callback(
+      "-v,--verbose", [&common] { common.verbosity = 1; }, "Say more on standard error");
+  const std::map<std::string, When> when = {
+      {"auto", When::automatic}, {"always", When::always}, {"never", When::never}};
+  add_choice<When>(
+      *group, "--color", "Colored messages; NO_COLOR and TERM=dumb are obeyed", when,
+      [&common](When value) { common.color = value; }, "HWSIM_COLOR");
+  add_choice<When>(
+      *group, "--progress", "Progress bar; auto: only on a terminal", when,
+      [&common](When value) { common.progress = value; }, "HWSIM_PROGRESS");
+  common.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  group->add_option("--jobs", common.jobs, "Threads; the results do not depend on it")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N")
+      ->envname("HWSIM_JOBS");
+}
+
+void add_sets(CLI::App& app, std::vector<std::string>& sets) {
+  add_repeatable(app, "--set", sets,
+                 "gpu., scene., technique., emulator. or timing. setting (repeatable, last wins)",
+                 "PATH=VALUE");
+}
+
+void add_overlays(CLI::App& app, std::vector<std::string>& overlays) {
+  add_repeatable(app, "--overlay", overlays, "TOML file laid over the GPU (repeatable)", "FILE");
+}
+
+void add_out(CLI::App& app, OutOptions& out) {
+  app.add_option("--out", out.directory, "Folder for the results; default runs/<date>-<time>-<id>")
+      ->type_name("DIR");
+  app.add_flag("--force", out.force, "Replace the results in --out");
+}
+
+void add_view(CLI::App& app, ViewOptions& view, bool required) {
+  app.add_option("SCENE", view.scene, "A .gltf or .glb file, or a generator: name:key=value,key=value")
+      ->required(required)
+      ->type_name(" ");
+  app.add_option_function<std::string>(
+         "--resolution", [&view](const std::string& text) { view.resolution = parse_resolution(text); },
+         "Pixels, 1 to 16384 each way; default 1280x720")
+      ->type_name("WxH");
+  app.add_option("--camera", view.camera, "A camera of the scene; default the first")
+      ->type_name("NAME|INDEX");
+  app.add_option("--lights", view.point_lights, "Point lights added to those of the scene")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N");
+  app.add_flag("--no-shadows", view.no_shadows, "No shadow map");
+  add_sets(app, view.sets);
+}
+
+/// The sentence of a help text that says what the command does; it follows the examples.
+std::string summary_of(const std::string& help) {
+  const auto gap = help.rfind("\n\n");
+  const size_t start = gap == std::string::npos ? 0 : gap + 2;
+  std::string sentence = help.substr(start, help.find('.', start) - start);
+  std::replace(sentence.begin(), sentence.end(), '\n', ' ');
+  return sentence;
+}
+
+/// Commands are listed with their sentence, not with their examples.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_subcommand(const CLI::App* sub) const override {
+    std::ostringstream out;
+    CLI::detail::format_help(out, sub->get_name(), summary_of(sub->get_description()), get_column_width());
+    return out.str();
+  }
+};
+
+/// The application and what its flags write to.
+struct Parser {
+  CLI::App app{std::string(kHelpTop), "hwsim"};
+  RunOptions run;
+  ReferenceOptions reference;
+  ListOptions list;
+  ShowOptions show;
+  SceneCheckOptions scene_check;
+  ConfigOptions config;
+  DoctorOptions doctor;
+  HelpOptions help;
+  CacheOptions cache;
+  CompletionOptions completion;
+
+  Parser();
+  Parser(const Parser&) = delete;
+  Parser& operator=(const Parser&) = delete;
+  Command command() const;
+
+ private:
+  std::map<const CLI::App*, std::function<Command()>> results_;
+
+  CLI::App& add(CLI::App& parent, const std::string& name, std::string_view text,
+                std::function<Command()> result);
+  void add_run();
+  void add_reference();
+  void add_list_and_show();
+  void add_scene();
+  void add_config();
+  void add_cache();
+  void add_rest();
+};
+
+CLI::App& Parser::add(CLI::App& parent, const std::string& name, std::string_view text,
+                      std::function<Command()> result) {
+  CLI::App& sub = *parent.add_subcommand(name, std::string(text));
+  sub.set_help_flag("-h,--help", "This text");
+  results_[&sub] = std::move(result);
+  return sub;
+}
+
+void Parser::add_run() {
+  CLI::App& sub = add(app, "run", kHelpRun, [this] { return Command(run); });
+  add_view(sub, run.view, true);
+  sub.add_option_function<std::vector<std::string>>(
+         "-t,--technique",
+         [this](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts)
+             for (std::string& technique : split_techniques(text))
+               run.techniques.push_back(std::move(technique));
+         },
+         "Techniques, separated by commas (repeatable); default none")
+      ->allow_extra_args(false)
+      ->type_name("NAME[:key=value]");
+  add_repeatable(sub, "-g,--gpu", run.gpus, "A GPU of `hwsim list gpus`, or a .toml file (repeatable)",
+                 "NAME|FILE")
+      ->envname("HWSIM_GPU");
+  add_overlays(sub, run.overlays);
+  sub.add_option("--engine", run.engine, "Timing engine; default queue")->type_name("roofline|queue");
+  sub.add_option("--reference", run.reference_samples,
+                 "Compare with the ray-traced reference of so many samples a pixel; default 64")
+      ->check(CLI::Range(1, 65536))
+      ->type_name("[SAMPLES]");
+  sub.add_flag("--no-image", run.no_image, "Write no images");
+  add_out(sub, run.out);
+  add_common(sub, run.common);
+}
+
+void Parser::add_reference() {
+  CLI::App& sub = add(app, "reference", kHelpReference, [this] { return Command(reference); });
+  add_view(sub, reference.view, true);
+  sub.add_option("--samples", reference.samples, "Samples a pixel; default 64")
+      ->check(CLI::Range(1, 65536))
+      ->type_name("N");
+  add_out(sub, reference.out);
+  add_common(sub, reference.common);
+}
+
+void Parser::add_list_and_show() {
+  CLI::App& lister = add(app, "list", kHelpList, [this] { return Command(list); });
+  lister.add_option("WHAT", list.what, "gpus, scenes, techniques, counters or tables")
+      ->required()
+      ->type_name(" ");
+  add_common(lister, list.common);
+  CLI::App& shower = add(app, "show", kHelpShow, [this] { return Command(show); });
+  shower.add_option("NAME", show.name, "A GPU, scene, technique, counter or table")
+      ->required()
+      ->type_name(" ");
+  shower.add_flag("--origin", show.origin, "Where each value comes from");
+  add_overlays(shower, show.overlays);
+  add_sets(shower, show.sets);
+  add_common(shower, show.common);
+}
+
+void Parser::add_scene() {
+  CLI::App& parent = add(app, "scene", kHelpScene, nullptr);
+  parent.require_subcommand(1);
+  CLI::App& check = add(parent, "check", kHelpSceneCheck, [this] { return Command(scene_check); });
+  check.add_option("SCENE", scene_check.scenes, "Files or generators")->required()->type_name(" ");
+  add_common(check, scene_check.common);
+}
+
+void Parser::add_config() {
+  using Action = ConfigOptions::Action;
+  CLI::App& parent = add(app, "config", kHelpConfig, nullptr);
+  parent.require_subcommand(1);
+  const auto action = [&](const std::string& name, std::string_view text, Action value) -> CLI::App& {
+    CLI::App& sub = add(parent, name, text, [this, value] {
+      ConfigOptions options = config;
+      options.action = value;
+      return Command(options);
+    });
+    add_common(sub, config.common);
+    return sub;
+  };
+  CLI::App& check = action("check", kHelpConfigCheck, Action::check);
+  check.add_option("FILE", config.names, "TOML files, or GPUs of `hwsim list gpus`")
+      ->required()
+      ->type_name(" ");
+  CLI::App& shower = action("show", kHelpConfigShow, Action::show);
+  shower.add_option("GPU", config.names, "A GPU or a .toml file")->required()->expected(1)->type_name(" ");
+  shower.add_flag("--all,--origin", config.origin, "Where each value comes from");
+  add_overlays(shower, config.overlays);
+  add_sets(shower, config.sets);
+  CLI::App& schema = action("schema", kHelpConfigSchema, Action::schema);
+  schema.add_option("KIND", config.names, "gpu (default)")->expected(0, 1)->type_name(" ");
+  CLI::App& diff = action("diff", kHelpConfigDiff, Action::diff);
+  diff.add_option("GPU", config.names, "Two GPUs or .toml files")->required()->expected(2)->type_name(" ");
+}
+
+void Parser::add_cache() {
+  CLI::App& parent = add(app, "cache", kHelpCache, nullptr);
+  parent.require_subcommand(1);
+  CLI::App& lister = add(parent, "list", kHelpCacheList, [this] { return Command(cache); });
+  add_common(lister, cache.common);
+  CLI::App& prune = add(parent, "prune", kHelpCachePrune, [this] {
+    CacheOptions options = cache;
+    options.prune = true;
+    return Command(options);
+  });
+  prune.add_flag("--all", cache.all, "Everything, however recent");
+  prune.add_option("--older-than", cache.older_than_days, "Days since a file was written; default 30")
+      ->check(CLI::Range(0, 36500))
+      ->type_name("DAYS");
+  prune.add_flag("--dry-run", cache.dry_run, "Say what would go, and keep it");
+  add_common(prune, cache.common);
+}
+
+void Parser::add_rest() {
+  CLI::App& doctor_app = add(app, "doctor", kHelpDoctor, [this] { return Command(doctor); });
+  add_common(doctor_app, doctor.common);
+  CLI::App& helper = add(app, "help", kHelpHelp, [this] { return Command(help); });
+  helper.add_option("TOPIC", help.topic, "The code of a message (C012), or a command")->type_name(" ");
+  add_common(helper, help.common);
+  CLI::App& completer = add(app, "completion", kHelpCompletion, [this] { return Command(completion); });
+  completer.add_option("SHELL", completion.shell, "bash, zsh or fish")->required()->type_name(" ");
+}
+
+Parser::Parser() {
+  app.set_help_flag("-h,--help", "This text");
+  app.set_version_flag("--version", std::string("hwsim ") + HWSIM_VERSION);
+  const auto formatter = std::make_shared<HelpFormatter>();
+  formatter->column_width(34);
+  app.formatter(formatter);
+  app.require_subcommand(1);
+  add_run();
+  add_reference();
+  add_list_and_show();
+  add_scene();
+  add_config();
+  add_rest();
+  add_cache();
+}
+
+Command Parser::command() const {
+  const CLI::App* chosen = &app;
+  while (!chosen->get_subcommands().empty()) chosen = chosen->get_subcommands().front();
+  return results_.at(chosen)();
+}
+
+/// The subcommand that the words before the first flag lead to, for messages and for `help`.
+const CLI::App& selected(const CLI::App& app, const std::vector<std::string>& words) {
+  const CLI::App* chosen = &app;
+  for (const std::string& word : words) {
+    const CLI::App* next = nullptr;
+    for (const CLI::App* sub : chosen->get_subcommands([](const CLI::App*) { return true; }))
+      if (sub->get_name() == word) next = sub;
+    if (!next) break;
+    chosen = next;
+  }
+  return *chosen;
+}
+
+std::vector<std::string> subcommand_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
+    if (!sub->get_name().empty())
+      names.push_back(sub->get_name());  // option groups are subcommands without a name
+  return names;
+}
+
+/// A command that is not there, before CLI11 reports it as some missing flag.
+void check_command_names(const CLI::App& app, const std::vector<std::string>& words) {
+  const CLI::App& chosen = selected(app, words);
+  const std::vector<std::string> names = subcommand_names(chosen);
+  if (names.empty()) return;
+  const size_t depth = &chosen == &app ? 0 : 1;
+  const std::string lead = depth == 0 ? "" : chosen.get_name() + " ";
+  if (words.size() == depth)
+    fail_usage("U002", "no command given after `hwsim" + (depth == 0 ? "" : " " + chosen.get_name()) + "`",
+               "one of " + CLI::detail::join(names, ", "));
+  if (words[depth].starts_with("-")) return;
+  fail_usage("U001", "unknown command `" + lead + words[depth] + "`", did_you_mean(words[depth], names));
+}
+
+std::vector<FlagInfo> flags_of(const CLI::App& app) {
+  std::vector<FlagInfo> flags;
+  for (const CLI::Option* option :
+       app.get_options([](const CLI::Option* o) { return !o->get_positional(); })) {
+    FlagInfo flag;
+    for (const std::string& name : option->get_snames()) flag.names.push_back("-" + name);
+    for (const std::string& name : option->get_lnames()) flag.names.push_back("--" + name);
+    flag.description = option->get_description();
+    flag.takes_value = option->get_items_expected_max() > 0;
+    flags.push_back(std::move(flag));
+  }
+  for (const CLI::App* group :
+       app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); }))
+    for (FlagInfo& flag : flags_of(*group)) flags.push_back(std::move(flag));
+  return flags;
+}
+
+[[noreturn]] void fail_unknown_argument(const CLI::App& chosen, const std::string& argument) {
+  std::vector<std::string> names;
+  for (const FlagInfo& flag : flags_of(chosen))
+    names.insert(names.end(), flag.names.begin(), flag.names.end());
+  const std::string name = argument.substr(0, argument.find('='));
+  const std::string kind = argument.starts_with("-") ? "unknown flag `" : "unexpected argument `";
+  fail_usage("U001", kind + name + "`", did_you_mean(name, names),
+             "`hwsim " + chosen.get_name() + " --help` lists the flags");
+}
+
+[[noreturn]] void translate(const CLI::ParseError& error, const CLI::App& app,
+                            const std::vector<std::string>& words) {
+  const CLI::App& chosen = selected(app, words);
+  const std::string help = "`hwsim " + chosen.get_name() + " --help` lists the flags";
+  std::string message = error.what();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
+    const auto rest = app.remaining(true);
+    if (!rest.empty()) fail_unknown_argument(chosen, rest.front());
+  }
+  if (dynamic_cast<const CLI::RequiredError*>(&error)) fail_usage("U002", message, "", help);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) fail_usage("U004", message, "", help);
+  fail_usage("U003", message, "", help);
+}
+
+/// `--reference` stands alone or before a number; CLI11 would take the scene for the number.
+std::vector<std::string> with_explicit_values(int argc, const char* const* argv) {
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  for (size_t i = 0; i < words.size(); ++i) {
+    if (words[i] != "--reference") continue;
+    const bool number = i + 1 < words.size() && !words[i + 1].empty() &&
+                        words[i + 1].find_first_not_of("0123456789") == std::string::npos;
+    words[i] += "=" + (number ? words[i + 1] : std::to_string(kDefaultReferenceSamples));
+    if (number) words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+  }
+  return words;
+}
+
+}  // namespace
+
+Command parse_arguments(int argc, const char* const* argv) {
+  const auto parser = std::make_unique<Parser>();
+  const std::vector<std::string> words = with_explicit_values(argc, argv);
+  const bool wants_text = !words.empty() && words.front().starts_with("-");
+  if (!wants_text) check_command_names(parser->app, words);
+  try {
+    parser->app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes them last first
+  } catch (const CLI::CallForHelp&) {
+    return PrintText{parser->app.help()};
+  } catch (const CLI::CallForVersion& version) {
+    return PrintText{std::string(version.what()) + "\n"};
+  } catch (const CLI::ParseError& error) {
+    translate(error, parser->app, words);
+  }
+  return parser->command();
+}
+
+std::optional<std::string> help_text(std::string_view command) {
+  Parser parser;
+  std::vector<std::string> words = CLI::detail::split(std::string(command), ' ');
+  const CLI::App& chosen = selected(parser.app, words);
+  if (chosen.get_name() != words.back()) return std::nullopt;
+  words.pop_back();
+  return chosen.help("hwsim" + (words.empty() ? "" : " " + words.front()));
+}
+
+std::vector<CommandInfo> describe_commands() {
+  Parser parser;
+  std::vector<CommandInfo> commands;
+  const auto add = [&commands](const CLI::App& app, const std::string& name) {
+    commands.push_back({name, summary_of(app.get_description()), flags_of(app)});
+  };
+  for (const std::string& name : subcommand_names(parser.app)) {
+    const CLI::App& app = selected(parser.app, {name});
+    add(app, name);
+    for (const std::string& sub : subcommand_names(app)) add(selected(app, {sub}), name + " " + sub);
+  }
+  return commands;
+}
+
+}  // namespace hwsim::cli

@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "cli/commands.h"
+#include "cli/files.h"
+#include "cli/progress.h"
+#include "cli/run_directory.h"
+#include "cli/run_files.h"
+#include "pipeline/image/image_io.h"
+
+namespace hwsim::cli {
+
+ExitStatus reference(const ReferenceOptions& options, Context& context) {
+  const auto start = std::chrono::steady_clock::now();
+  InterruptGuard guard;
+  RunPlan plan;
+  plan.view = make_view_plan(options.view);
+  plan.reference_samples = options.samples;
+  for (const std::string& text : options.view.sets) plan.overrides.push_back(parse_assignment(text));
+  context.log.say(fmt::format("plan: reference of {}, {} samples a pixel, {}x{}, {} threads", plan.view.scene,
+                              options.samples, plan.view.resolution.width_px, plan.view.resolution.height_px,
+                              options.common.jobs));
+  RunDirectory directory(options.out, plan.view.scene);
+  guard.remove_on_interrupt(directory.partial());
+  Progress progress(options.common, context.terminal);
+  const LoadedScene loaded = load_view(plan.view);
+  for (const Diagnostic& note : loaded.scene->notes) context.log.report(note);
+  const ReferenceImage image =
+      make_reference(plan.view, loaded, options.samples, options.common.jobs,
+                     [&](double done, const std::string& what) { progress.update(done, what); });
+  progress.finish();
+  pipeline::write_image(image.image, directory.path("reference.png"));
+  pipeline::write_image(image.image, directory.path("reference.exr"));
+  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  write_file(directory.path("manifest.json"), manifest({.context = &context,
+                                                        .plan = &plan,
+                                                        .scene = loaded.scene.get(),
+                                                        .wall_s = wall_s,
+                                                        .state = "done"})
+                                                      .dump(2) +
+                                                  "\n");
+  write_file(directory.path("log.txt"), context.log.text());
+  directory.commit();
+  guard.keep();
+  const Table table{
+      {{"scene", "scene"},
+       {"samples", "samples a pixel", true},
+       {"wall_s", "seconds", true},
+       {"from_cache", "from cache"},
+       {"image", "image"}},
+      {{loaded.scene->name, static_cast<std::uint64_t>(options.samples), Real{image.wall_s, 2},
+        image.from_cache ? "yes" : "no", (directory.final_place() / "reference.png").string()}}};
+  print({.table = table}, options.common);
+  return ExitStatus::done;
+}
+
+}  // namespace hwsim::cli

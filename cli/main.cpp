@@ -1,0 +1,75 @@
+#include <cstdio>
+#include <exception>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/messages.h"
+#include "cli/simulate.h"
+
+namespace hwsim::cli {
+namespace {
+
+template <class... Functions>
+struct Overloaded : Functions... {
+  using Functions::operator()...;
+};
+
+CommonOptions common_of(const Command& command) {
+  return std::visit(Overloaded{[](const PrintText&) { return CommonOptions{}; },
+                               [](const auto& options) { return options.common; }},
+                    command);
+}
+
+ExitStatus dispatch(const Command& command, Context& context) {
+  return std::visit(Overloaded{[](const PrintText& text) {
+                                 std::fputs(text.text.c_str(), stdout);
+                                 return ExitStatus::done;
+                               },
+                               [&](const RunOptions& o) { return run(o, context); },
+                               [&](const ReferenceOptions& o) { return reference(o, context); },
+                               [&](const ListOptions& o) { return list(o, context); },
+                               [&](const ShowOptions& o) { return show_entry(o, context); },
+                               [&](const SceneCheckOptions& o) { return scene_check(o, context); },
+                               [&](const ConfigOptions& o) { return config(o, context); },
+                               [&](const DoctorOptions& o) { return doctor(o, context); },
+                               [&](const HelpOptions& o) { return help(o, context); },
+                               [&](const CacheOptions& o) { return cache(o, context); },
+                               [&](const CompletionOptions& o) { return completion(o, context); }},
+                    command);
+}
+
+ExitStatus report(const InputError& error, Log& log) {
+  for (const Diagnostic& diagnostic : error.diagnostics()) log.report(diagnostic);
+  if (error.diagnostics().size() > 1)
+    std::fprintf(stderr, "%zu errors, nothing was run\n", error.diagnostics().size());
+  return error.status();
+}
+
+ExitStatus report_internal(const char* what, Log& log) {
+  log.report(problem("X001", "internal error: " + std::string(what), "",
+                     "this is a mistake in hwsim, not in your input; please report it with the text above"));
+  return ExitStatus::run_failed;
+}
+
+ExitStatus run_program(int argc, char** argv) {
+  Context context{{argv, argv + argc}, inspect_terminal({}), Log({}, inspect_terminal({}))};
+  try {
+    const Command command = parse_arguments(argc, argv);
+    const CommonOptions common = common_of(command);
+    context.terminal = inspect_terminal(common);
+    context.log = Log(common, context.terminal);
+    return dispatch(command, context);
+  } catch (const InputError& error) {
+    return report(error, context.log);
+  } catch (const std::bad_alloc&) {
+    context.log.report(problem("X002", "out of memory", "", "a smaller scene, or a smaller --resolution"));
+    return ExitStatus::run_failed;
+  } catch (const std::exception& error) {
+    return report_internal(error.what(), context.log);
+  }
+}
+
+}  // namespace
+}  // namespace hwsim::cli
+
+int main(int argc, char** argv) { return static_cast<int>(hwsim::cli::run_program(argc, argv)); }

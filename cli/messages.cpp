@@ -1,0 +1,28 @@
+#include "cli/messages.h"
+
+namespace hwsim::cli {
+
+Diagnostic problem(std::string code, std::string message, std::string hint, std::string help) {
+  Diagnostic d;
+  d.code = std::move(code);
+  d.message = std::move(message);
+  d.hint = std::move(hint);
+  d.help = std::move(help);
+  return d;
+}
+
+std::string did_you_mean(std::string_view name, std::span<const std::string> candidates) {
+  const std::string nearest = nearest_name(name, candidates);
+  return nearest.empty() ? "" : "did you mean `" + nearest + "`?";
+}
+
+void fail(std::string code, std::string message, std::string hint, std::string help) {
+  throw InputError(problem(std::move(code), std::move(message), std::move(hint), std::move(help)));
+}
+
+void fail_usage(std::string code, std::string message, std::string hint, std::string help) {
+  throw InputError(problem(std::move(code), std::move(message), std::move(hint), std::move(help)),
+                   ExitStatus::usage);
+}
+
+}  // namespace hwsim::cli

@@ -1,0 +1,122 @@
+#pragma once
+// What the command line says, as plain data. Filled by arguments.cpp, the only file that knows CLI11.
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace hwsim::cli {
+
+enum class When { automatic, always, never };
+enum class Format { table, csv, json, md };
+
+/// `--format csv` (standard output) or `--format csv=passes.csv`.
+struct FormatRequest {
+  Format format = Format::table;
+  std::string file;  ///< empty: standard output
+};
+
+/// Flags of every command.
+struct CommonOptions {
+  std::vector<FormatRequest> formats;  ///< empty: a table on standard output
+  int verbosity = 0;                   ///< -1 quiet, 1 verbose
+  When color = When::automatic;
+  When progress = When::automatic;
+  int jobs = 1;
+};
+
+struct Resolution {
+  int width_px = 1280;
+  int height_px = 720;
+};
+
+/// What is drawn, before any technique.
+struct ViewOptions {
+  std::string scene;
+  std::optional<Resolution> resolution;
+  std::optional<std::string> camera;  ///< a name or an index
+  std::optional<int> point_lights;
+  bool no_shadows = false;
+  std::vector<std::string> sets;  ///< "path=value"
+};
+
+struct OutOptions {
+  std::string directory;  ///< empty: runs/<date>-<time>-<id>
+  bool force = false;
+};
+
+struct RunOptions {
+  CommonOptions common;
+  ViewOptions view;
+  OutOptions out;
+  std::vector<std::string> techniques, gpus, overlays;
+  std::optional<std::string> engine;
+  std::optional<int> reference_samples;
+  bool no_image = false;
+};
+
+struct ReferenceOptions {
+  CommonOptions common;
+  ViewOptions view;
+  OutOptions out;
+  int samples = 64;
+};
+
+struct ListOptions {
+  CommonOptions common;
+  std::string what;
+};
+
+struct ShowOptions {
+  CommonOptions common;
+  std::string name;
+  bool origin = false;
+  std::vector<std::string> overlays, sets;
+};
+
+struct SceneCheckOptions {
+  CommonOptions common;
+  std::vector<std::string> scenes;
+};
+
+struct ConfigOptions {
+  enum class Action { check, show, schema, diff };
+  CommonOptions common;
+  Action action = Action::check;
+  std::vector<std::string> names;
+  bool origin = false;
+  std::vector<std::string> overlays, sets;
+};
+
+struct DoctorOptions {
+  CommonOptions common;
+};
+
+struct HelpOptions {
+  CommonOptions common;
+  std::string topic;
+};
+
+struct CacheOptions {
+  CommonOptions common;
+  bool prune = false;
+  bool all = false;
+  int older_than_days = 30;
+  bool dry_run = false;
+};
+
+struct CompletionOptions {
+  CommonOptions common;
+  std::string shell;
+};
+
+/// Text to print and nothing to do: --help and --version.
+struct PrintText {
+  std::string text;
+};
+
+using Command =
+    std::variant<PrintText, RunOptions, ReferenceOptions, ListOptions, ShowOptions, SceneCheckOptions,
+                 ConfigOptions, DoctorOptions, HelpOptions, CacheOptions, CompletionOptions>;
+
+}  // namespace hwsim::cli

@@ -1,0 +1,248 @@
+#include "cli/plan.h"
+
+#include <algorithm>
+#include <set>
+
+#include "cli/argument_values.h"
+#include "cli/files.h"
+#include "cli/help_texts.h"
+#include "cli/messages.h"
+#include "cli/run_file.h"
+#include "cli/table.h"
+#include "hwsim/config/settings.h"
+
+namespace hwsim::cli {
+namespace {
+
+struct SceneSettings {
+  int point_lights = 0;
+  bool shadows = true;
+  int shadow_map_px = 2048;
+};
+template <class Visitor>
+void describe(Visitor& v, SceneSettings& s) {
+  v.key({"point_lights", 0, 1024, kNoFlags, "seeded point lights added to those of the scene"},
+        s.point_lights);
+  v.key({"shadows", 0, 1, kNoFlags, "a shadow map for the light that casts shadows"}, s.shadows);
+  v.key({"shadow_map_px", 16, kMaxSidePx, kNoFlags, "side of the shadow map"}, s.shadow_map_px);
+}
+
+struct EmulatorSettings {
+  std::string skip = "all";
+};
+template <class Visitor>
+void describe(Visitor& v, EmulatorSettings& s) {
+  v.key({"skip", 0, 0, kNoFlags, "work to leave out: all, none, or some of frustum,accepted_tiles"}, s.skip);
+}
+
+struct TimingSettings {
+  std::string engine = "queue";
+};
+template <class Visitor>
+void describe(Visitor& v, TimingSettings& s) {
+  v.key({"engine", 0, 0, kNoFlags, "roofline or queue"}, s.engine);
+}
+
+void append(std::vector<Diagnostic>& problems, const InputError& error) {
+  problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
+}
+
+std::vector<Assignment> parse_sets(const std::vector<std::string>& texts, std::vector<Diagnostic>& problems) {
+  std::vector<Assignment> sets;
+  for (const std::string& text : texts) try {
+      sets.push_back(parse_assignment(text));
+    } catch (const InputError& error) {
+      append(problems, error);
+    }
+  return sets;
+}
+
+std::string key_of(const Assignment& set) { return set.path.substr(set.path.find('.') + 1); }
+
+bool is_scene_file(const std::string& scene) {
+  const auto dot = scene.rfind('.');
+  const std::string ending = dot == std::string::npos ? "" : scene.substr(dot);
+  return ending == ".gltf" || ending == ".glb";
+}
+
+/// scene.* holds settings of the view and, for a generated scene, the generator's own parameters; the
+/// generator checks the latter.
+ViewPlan plan_view(const ViewOptions& options, const std::vector<Assignment>& sets, const ViewPlan& start,
+                   std::vector<Diagnostic>& problems) {
+  ViewPlan plan = start;
+  SceneSettings settings{start.point_lights, start.shadows, start.shadow_map_px};
+  const std::vector<Key> keys = keys_of(settings);
+  std::vector<Assignment> own, generator;
+  for (const Assignment& set : sets) {
+    if (set.group() != "scene") continue;
+    const bool known =
+        std::any_of(keys.begin(), keys.end(), [&](const Key& k) { return k.info.name == key_of(set); });
+    (known || is_scene_file(plan.scene) ? own : generator).push_back(set);
+  }
+  apply_settings("scene", keys, own, problems);
+  plan.scene = with_parameters(plan.scene, generator);
+  plan.point_lights = options.point_lights.value_or(settings.point_lights);
+  plan.shadows = settings.shadows && !options.no_shadows;
+  plan.shadow_map_px = settings.shadow_map_px;
+  plan.resolution = options.resolution.value_or(start.resolution);
+  plan.camera = options.camera.value_or(start.camera);
+  return plan;
+}
+
+Engine plan_engine(const std::string& name, std::vector<Diagnostic>& problems) {
+  if (const auto engine = engine_from_name(name)) return *engine;
+  problems.push_back(problem("U006", "unknown timing engine `" + name + "`, must be roofline or queue",
+                             did_you_mean(name, std::vector<std::string>{"roofline", "queue"})));
+  return Engine::queue;
+}
+
+pipeline::SkipSwitches plan_skip(const std::string& text, std::vector<Diagnostic>& problems) {
+  const bool all = text == "all";
+  pipeline::SkipSwitches skip{all, all};
+  if (all || text == "none") return skip;
+  for (const std::string& name : split_techniques(text)) {
+    if (name == "frustum")
+      skip.frustum = true;
+    else if (name == "accepted_tiles")
+      skip.accepted_tiles = true;
+    else
+      problems.push_back(problem(
+          "U007",
+          "`emulator.skip` names `" + name + "`, must be all, none, or some of frustum,accepted_tiles",
+          did_you_mean(name, std::vector<std::string>{"all", "none", "frustum", "accepted_tiles"})));
+  }
+  return skip;
+}
+
+bool has_parameter(const algos::TechniqueChoice& choice, const std::string& key) {
+  return choice.parameters.find(key) != choice.parameters.end();
+}
+
+/// technique.* goes to every technique that has the parameter; one at least must have it.
+std::vector<algos::TechniqueChoice> plan_techniques(const std::vector<std::string>& texts,
+                                                    const std::vector<Assignment>& sets,
+                                                    std::vector<Diagnostic>& problems) {
+  std::vector<algos::TechniqueChoice> choices;
+  std::set<std::string> used, known;
+  for (const std::string& text : texts) try {
+      algos::TechniqueChoice choice = algos::parse_technique(text);
+      std::vector<Assignment> own;
+      for (const auto& [name, value] : choice.parameters) known.insert(name);
+      for (const Assignment& set : sets)
+        if (set.group() == "technique" && has_parameter(choice, key_of(set))) own.push_back(set);
+      for (const Assignment& set : own) used.insert(set.path);
+      choices.push_back(own.empty() ? choice : algos::parse_technique(with_parameters(text, own)));
+    } catch (const InputError& error) {
+      append(problems, error);
+    }
+  const std::vector<std::string> candidates(known.begin(), known.end());
+  for (const Assignment& set : sets)
+    if (set.group() == "technique" && !used.contains(set.path) && choices.size() == texts.size())
+      problems.push_back(problem("U008", "no chosen technique has the parameter `" + key_of(set) + "`",
+                                 did_you_mean(key_of(set), candidates),
+                                 "`hwsim show TECHNIQUE` lists the parameters of one"));
+  return choices;
+}
+
+std::vector<GpuConfig> plan_gpus(const std::vector<std::string>& names,
+                                 const std::vector<std::string>& overlays,
+                                 const std::vector<Assignment>& sets, std::vector<Diagnostic>& problems) {
+  std::vector<GpuConfig> gpus;
+  const std::string directory = gpu_directory();
+  for (const std::string& name : names) try {
+      gpus.push_back(load_gpu(name, overlays, sets, directory));
+    } catch (const InputError& error) {
+      append(problems, error);
+    }
+  return gpus;
+}
+
+void check_group_names(const std::vector<Assignment>& sets, const std::vector<std::string>& groups,
+                       std::vector<Diagnostic>& problems) {
+  try {
+    check_groups(sets, groups);
+  } catch (const InputError& error) {
+    append(problems, error);
+  }
+}
+
+}  // namespace
+
+std::string with_parameters(const std::string& text, const std::vector<Assignment>& parameters) {
+  std::string result = text;
+  for (const Assignment& set : parameters) {
+    const std::string key = key_of(set) + "=";
+    const auto colon = result.find(':');
+    if (colon == std::string::npos) {
+      result += ":" + key + set.value;
+      continue;
+    }
+    size_t at = colon + 1;
+    while (at < result.size() && result.compare(at, key.size(), key) != 0) {
+      const auto comma = result.find(',', at);
+      at = comma == std::string::npos ? result.size() : comma + 1;
+    }
+    if (at < result.size())
+      result.replace(at, std::min(result.find(',', at), result.size()) - at, key + set.value);
+    else
+      result += "," + key + set.value;
+  }
+  return result;
+}
+
+std::string technique_text(const algos::TechniqueChoice& choice, bool complete) {
+  std::string parameters;
+  for (const algos::ParameterInfo& info : choice.info->parameters) {
+    const double value = choice.parameters.find(info.name)->second;
+    if (!complete && value == info.default_value) continue;
+    std::string text = exact(value);
+    if (!info.choices.empty()) {
+      std::string_view rest = info.choices;
+      for (double i = 0; i < value; ++i) rest.remove_prefix(rest.find('|') + 1);
+      text = rest.substr(0, rest.find('|'));
+    }
+    parameters += (parameters.empty() ? ":" : ",") + std::string(info.name) + "=" + text;
+  }
+  return std::string(choice.info->id) + parameters;
+}
+
+ViewPlan make_view_plan(const ViewOptions& options) {
+  std::vector<Diagnostic> problems;
+  const std::vector<Assignment> sets = parse_sets(options.sets, problems);
+  check_group_names(sets, {"scene"}, problems);
+  ViewPlan start;
+  start.scene = options.scene;
+  const ViewPlan plan = plan_view(options, sets, start, problems);
+  if (!problems.empty()) throw InputError(problems);
+  return plan;
+}
+
+RunPlan make_run_plan(const RunOptions& options) {
+  std::vector<Diagnostic> problems;
+  const std::vector<Assignment> sets = parse_sets(options.view.sets, problems);
+  check_group_names(sets, {"gpu", "scene", "technique", "emulator", "timing"}, problems);
+
+  RunFile file;  // what a run.toml says, or the defaults
+  file.view.scene = options.view.scene;
+  if (options.view.scene.ends_with(".toml")) file = read_run_file(options.view.scene);
+  EmulatorSettings emulator{file.skip};
+  TimingSettings timing{file.engine};
+  apply_settings("emulator", keys_of(emulator), sets, problems);
+  apply_settings("timing", keys_of(timing), sets, problems);
+
+  RunPlan plan;
+  plan.overrides = sets;
+  plan.view = plan_view(options.view, sets, file.view, problems);
+  plan.engine = plan_engine(options.engine.value_or(timing.engine), problems);
+  plan.skip = plan_skip(emulator.skip, problems);
+  plan.techniques = plan_techniques(
+      options.techniques.empty() ? std::vector{file.technique} : options.techniques, sets, problems);
+  plan.gpus = plan_gpus(options.gpus.empty() ? std::vector{file.gpu} : options.gpus, options.overlays, sets,
+                        problems);
+  plan.reference_samples = options.reference_samples.value_or(file.reference_samples);
+  plan.images = !options.no_image;
+  if (!problems.empty()) throw InputError(problems);
+  return plan;
+}
+
+}  // namespace hwsim::cli

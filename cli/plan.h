@@ -1,0 +1,48 @@
+#pragma once
+// From the command line to a plan with every value decided, before anything is loaded or drawn. What is wrong
+// is reported all at once.
+#include <map>
+#include <string>
+#include <vector>
+
+#include "algos/technique.h"
+#include "cli/options.h"
+#include "hwsim/config/gpu_config.h"
+#include "hwsim/config/toml_value.h"
+#include "hwsim/timing/timing.h"
+#include "pipeline/emulate/emulator.h"
+
+namespace hwsim::cli {
+
+/// What is drawn, from flags, --set scene.* and defaults.
+struct ViewPlan {
+  std::string scene;  ///< as pipeline::open_scene takes it: a path, or a generator with its parameters
+  Resolution resolution;
+  std::string camera = "0";
+  int point_lights = 0;
+  bool shadows = true;
+  int shadow_map_px = 2048;
+};
+
+struct RunPlan {
+  ViewPlan view;
+  std::vector<algos::TechniqueChoice> techniques;
+  std::vector<GpuConfig> gpus;
+  Engine engine = Engine::queue;
+  pipeline::SkipSwitches skip;
+  int reference_samples = 0;  ///< 0: no reference
+  bool images = true;
+  std::vector<Assignment> overrides;
+};
+
+/// Throws InputError with every problem found.
+RunPlan make_run_plan(const RunOptions& options);
+ViewPlan make_view_plan(const ViewOptions& options);
+
+/// "agaa:c=2": the parameters that differ from their defaults; with `complete`, all of them.
+std::string technique_text(const algos::TechniqueChoice& choice, bool complete = false);
+
+/// "grass:seed=3" with further parameters or other values for those it has.
+std::string with_parameters(const std::string& text, const std::vector<Assignment>& parameters);
+
+}  // namespace hwsim::cli

@@ -1,0 +1,48 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "algos/reference_frame.h"
+#include "cli/cache.h"
+#include "cli/files.h"
+#include "cli/simulate.h"
+#include "pipeline/image/image_io.h"
+
+namespace hwsim::cli {
+namespace {
+
+/// Everything that the image depends on.
+std::string reference_key(const ViewPlan& view, const LoadedScene& loaded, int samples) {
+  return fmt::format("{}|{}|{}|{}x{}|{}|{}|{}", algos::kReferenceVersion, loaded.scene->content_hash,
+                     loaded.camera, view.resolution.width_px, view.resolution.height_px, view.point_lights,
+                     view.shadows, samples);
+}
+
+}  // namespace
+
+ReferenceImage make_reference(const ViewPlan& view, const LoadedScene& loaded, int samples, int jobs,
+                              const ProgressFunction& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::filesystem::path folder = cache_directory(CacheFolder::references);
+  const std::string path = (folder / (hash_hex(reference_key(view, loaded, samples)) + ".exr")).string();
+  std::error_code error;
+  ReferenceImage result;
+  result.samples = samples;
+  result.from_cache = std::filesystem::exists(path, error);
+  if (!result.from_cache) {
+    const algos::FrameRequest request = frame_request(view, loaded);
+    algos::ReferenceFrameOptions options;
+    options.samples = samples;
+    options.jobs = jobs;
+    options.progress = [&progress](double share) { progress(share, "reference"); };
+    std::filesystem::create_directories(folder, error);
+    pipeline::write_image(algos::render_reference_frame(request, options), path);
+  }
+  // Read back even when it is new: the file has half floats, and every run must compare with the same image.
+  result.image = pipeline::read_image(path);
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace hwsim::cli

@@ -1,0 +1,113 @@
+// Color writes of a screen bin. Per-target include guard.
+#include "pipeline/emulate/bin_depth-inl.h"
+#include "pipeline/emulate/color_write-inl.h"
+
+#if defined(HWSIM_EMULATE_BIN_COLOR_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_EMULATE_BIN_COLOR_INL_H_
+#undef HWSIM_EMULATE_BIN_COLOR_INL_H_
+#else
+#define HWSIM_EMULATE_BIN_COLOR_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::pipeline::HWY_NAMESPACE {
+
+/// Color of one bin.
+class BinColor : protected BinDepth {
+ protected:
+  using BinDepth::BinDepth;
+
+  void write_tile(const FragmentBatch& batch, int block, const std::uint64_t* masks, int first_sample, int last_sample) {
+    for (std::size_t target = 0; target < c_.color.size(); ++target) {
+      const BlendState state = target < w_.state->blend.size() ? w_.state->blend[target] : BlendState{};
+      if (state.write_mask == 0) continue;
+      GpuImage& image = *c_.color[target];
+      image.use(block);
+      EncodedBatch texels;
+      const bool reads = state.enabled || state.write_mask != 0xf;
+      if (!reads) encode_batch(image.format, batch.color[target], image.words, kBatchLanes, texels);
+      std::uint64_t written = 0, any_lane = 0, every_sample = ~std::uint64_t{0};
+      for (int s = first_sample; s < last_sample; ++s) {
+        any_lane |= masks[s];
+        every_sample &= masks[s];
+        written += popcount(masks[s]);
+        if (masks[s] == 0) continue;
+        if (reads) blend_tile(image, state, batch.color[target], block, s, texels);
+        store_tile(image, block, s, masks[s], texels);
+      }
+      if (any_lane == 0) continue;
+      const bool all_samples = last_sample - first_sample == samples_;
+      count_color(image, block, popcount(any_lane), all_samples ? popcount(every_sample) : 0, written, reads);
+    }
+  }
+
+  void count_color(GpuImage& image, int block, std::uint64_t fragments, std::uint64_t single_color, std::uint64_t written,
+                   bool reads) {
+    PassCounters& n = w_.counters();
+    touch_tile(image, block, w_.current_chunk, n.crop);
+    const auto bytes = static_cast<std::uint64_t>(info(image.format).bytes);
+    n.crop.exported_fragments += fragments;
+    n.crop.single_color_fragments += single_color;
+    n.crop.written_samples += written;
+    n.mem.color_write_bytes += written * bytes;
+    if (reads) {
+      n.crop.blended_samples += written;
+      n.mem.color_read_bytes += written * bytes;
+    }
+  }
+
+  void write_color(const FragmentBatch& batch, const std::int32_t* block, const std::int32_t* quad_in_block,
+                   int first_sample, int last_sample) {
+    const WriteTargets to{block, quad_in_block, batch.quad_count};
+    for (std::size_t target = 0; target < c_.color.size(); ++target) {
+      const BlendState state = target < w_.state->blend.size() ? w_.state->blend[target] : BlendState{};
+      if (state.write_mask == 0) continue;
+      GpuImage& image = *c_.color[target];
+      for (int q = 0; q < to.count; ++q) image.use(block[q]);
+      EncodedBatch texels;
+      const bool reads = state.enabled || state.write_mask != 0xf;
+      if (!reads) encode_batch(image.format, batch.color[target], image.words, 4 * batch.quad_count, texels);
+      for (int s = first_sample; s < last_sample; ++s) {
+        if (reads) blend_batch(image, state, batch.color[target], to, s, texels);
+        write_sample(image, to, batch.sample_index >= 0, s, texels);
+      }
+      count_quads(image, to, batch.sample_index >= 0, first_sample, last_sample, reads);
+    }
+  }
+
+  std::uint8_t sample_mask(int quad, bool of_sample_batch, int s) const {
+    const auto q = static_cast<std::size_t>(quad);
+    return w_.samples[of_sample_batch ? static_cast<std::size_t>(w_.sample_quad[q]) : q].masks[s];
+  }
+
+  void write_sample(GpuImage& image, const WriteTargets& to, bool of_sample_batch, int s, const EncodedBatch& texels) {
+    for (int q = 0; q < to.count; ++q) {
+      const std::uint8_t mask = sample_mask(q, of_sample_batch, s);
+      if (mask == 0) continue;
+      for (int word = 0; word < image.words; ++word)
+        store_quad(texels.words[word] + 4 * q, mask, quad_texels(image, to.block[q], to.quad_in_block[q], s, word));
+    }
+  }
+
+  void count_quads(GpuImage& image, const WriteTargets& to, bool of_sample_batch, int first_sample, int last_sample,
+                   bool reads) {
+    for (int q = 0; q < to.count; ++q) {
+      std::uint64_t written = 0;
+      std::uint8_t lanes = 0, all = 15;
+      for (int s = first_sample; s < last_sample; ++s) {
+        const std::uint8_t mask = sample_mask(q, of_sample_batch, s);
+        written += popcount(mask);
+        lanes |= mask;
+        all &= mask;
+      }
+      if (lanes == 0) continue;
+      const bool all_samples = last_sample - first_sample == samples_;
+      count_color(image, to.block[q], popcount(lanes), all_samples ? popcount(all) : 0, written, reads);
+    }
+  }
+};
+
+}  // namespace hwsim::pipeline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,188 @@
+// Depth and stencil tests of a screen bin: coarse, early, late. Per-target include guard.
+#include <cstring>
+
+#include "pipeline/depth/depth_tile-inl.h"
+#include "pipeline/depth/stencil.h"
+#include "pipeline/emulate/fragment_setup-inl.h"
+#include "pipeline/emulate/pass_context.h"
+
+#if defined(HWSIM_EMULATE_BIN_DEPTH_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_EMULATE_BIN_DEPTH_INL_H_
+#undef HWSIM_EMULATE_BIN_DEPTH_INL_H_
+#else
+#define HWSIM_EMULATE_BIN_DEPTH_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::pipeline::HWY_NAMESPACE {
+
+/// Depth and stencil of one bin. BinDepth, BinColor, BinShading and BinRunner are the stages of one loop over a bin's
+/// triangles: each adds its stage to what the one before it offers.
+class BinDepth {
+ protected:
+  BinDepth(const PassContext& context, BinWorker& worker) : c_(context), w_(worker), samples_(context.samples) {}
+
+  CoarseResult test_coarse(const RasterTriangle& t, int x, int y, PassCounters& n) const {
+    if (c_.depth == nullptr || !w_.state->depth.test) return CoarseResult::ambiguous;
+    const auto block = static_cast<std::size_t>(c_.depth->block_index(x, y));
+    n.hiz.tested_tiles += 1;
+    CoarseResult result = coarse_test(t, x, y, c_.depth_scale, w_.state->depth.compare, c_.depth->depth_min[block],
+                                      c_.depth->depth_max[block]);
+    // A sample that fails may still change the stencil.
+    if (result == CoarseResult::killed && w_.state->stencil.test && w_.state->stencil.on_depth_fail != StencilOp::keep)
+      result = CoarseResult::ambiguous;
+    n.hiz.killed_tiles += result == CoarseResult::killed ? 1 : 0;
+    n.hiz.accepted_tiles += result == CoarseResult::accepted ? 1 : 0;
+    n.hiz.ambiguous_tiles += result == CoarseResult::ambiguous ? 1 : 0;
+    return result;
+  }
+
+  void count_depth_traffic(std::uint64_t tested, std::uint64_t passed, PassCounters& n) const {
+    const PipelineState& state = *w_.state;
+    n.stats.samples_passed += passed;
+    const auto bytes = static_cast<std::uint64_t>(c_.depth_bytes);
+    n.mem.depth_read_bytes += tested * bytes;
+    const bool stencil_writes = state.stencil.test && (state.stencil.on_pass != StencilOp::keep);
+    if (state.depth.write || stencil_writes) {
+      n.zrop.written_samples += passed;
+      n.mem.depth_write_bytes += passed * bytes;
+    }
+  }
+
+  void test_tile(const RasterTriangle* t, int x, int y, CoarseResult coarse, SampleMasks& masks, PassCounters& n) {
+    const PipelineState& state = *w_.state;
+    const int block = c_.depth->block_index(x, y);
+    c_.depth->use(block);
+    touch_tile(*c_.depth, block, w_.current_chunk, n.zrop);
+    std::uint64_t before_depth[kMaxSamples];
+    if (state.stencil.test) {
+      test_stencil(state.stencil, samples_, c_.depth->stencil_block(block), masks.lanes);
+      masks.keep(~std::uint64_t{0}, 0, samples_, samples_);
+      std::memcpy(before_depth, masks.lanes, sizeof(std::uint64_t) * static_cast<std::size_t>(samples_));
+    }
+    const Compare compare = state.depth.test ? state.depth.compare : Compare::always;
+    const bool write = state.depth.write;
+    const bool known = coarse == CoarseResult::accepted && state.depth.test && c_.skip.accepted_tiles;
+    if (known && !write) {
+      w_.accepted_tiles_skipped += 1;
+    } else if (t != nullptr && (state.depth.test || write)) {  // full-screen passes test stencil alone
+      const TileDepth tile{c_.depth->block(block), &c_.depth->depth_min[static_cast<std::size_t>(block)],
+                           &c_.depth->depth_max[static_cast<std::size_t>(block)], c_.depth_scale};
+      fine_test(compare, write, *t, x, y, c_.positions, tile, masks);
+    }
+    if (state.stencil.test)
+      update_stencil(state.stencil, samples_, c_.depth->stencil_block(block), before_depth, masks.lanes);
+  }
+
+  static std::uint64_t popcount(std::uint64_t bits) { return static_cast<std::uint64_t>(__builtin_popcountll(bits)); }
+
+  void test_tile_late(const RasterTriangle* t, int x, int y, SampleMasks& masks) {
+    const std::uint64_t tested = masks.count;
+    if (tested == 0) return;
+    PassCounters& n = w_.counters();
+    test_tile(t, x, y, CoarseResult::ambiguous, masks, n);
+    n.zrop.late_z_tested_samples += tested;
+    n.zrop.late_z_killed_samples += tested - masks.count;
+    count_depth_traffic(tested, masks.count, n);
+  }
+
+  void test_late() {
+    for (int s = 0; s < samples_; ++s) test_late_sample(s);
+    refresh_bounds();
+  }
+
+  // In submission order, a quad at a time: two quads of a batch never lie on the same pixels (see append_tile).
+  void test_late_sample(int s) {
+    const D4 d;
+    const PipelineState& state = *w_.state;
+    const SamplePosition p = c_.positions[static_cast<std::size_t>(s)];
+    PassCounters& n = w_.counters();
+    std::uint64_t tested = 0, passed = 0;
+    for (std::size_t q = 0; q < static_cast<std::size_t>(w_.batch.quad_count); ++q) {
+      std::uint8_t& mask = w_.samples[q].masks[s];
+      if (mask == 0) continue;
+      tested += popcount(mask);
+      HWY_ALIGN float values[4] = {};
+      if (const RasterTriangle* t = w_.batch.triangle[q]; t != nullptr) {  // null in full-screen passes: stencil only
+        const float x0 = static_cast<float>(w_.batch.quad_x[q] - t->reference_x) + 0.5f + static_cast<float>(p.x) * 0.0625f;
+        const float y0 = static_cast<float>(w_.batch.quad_y[q] - t->reference_y) + 0.5f + static_cast<float>(p.y) * 0.0625f;
+        const auto x = hn::Add(hn::Load(d, kQuadX), hn::Set(d, x0)), y = hn::Add(hn::Load(d, kQuadY), hn::Set(d, y0));
+        hn::Store(plane_at(t->z, x, y), d, values);
+      }
+      c_.depth->use(w_.block[q]);
+      touch_tile(*c_.depth, w_.block[q], w_.current_chunk, n.zrop);
+      mask = test_quad(state, q, s, values, mask);
+      passed += popcount(mask);
+    }
+    n.zrop.late_z_tested_samples += tested;
+    n.zrop.late_z_killed_samples += tested - passed;
+    count_depth_traffic(tested, passed, n);
+  }
+
+  std::uint8_t test_quad(const PipelineState& state, std::size_t q, int s, const float* values, std::uint8_t mask) {
+    const int first = s * kBlockLanes + 4 * w_.quad_in_block[q];
+    std::uint32_t* stored = c_.depth->block(w_.block[q]) + first;
+    std::uint8_t* stencil = state.stencil.test ? c_.depth->stencil_block(w_.block[q]) + first : nullptr;
+    std::uint8_t passed = 0;
+    for (int lane = 0; lane < 4; ++lane) {
+      if ((mask >> lane & 1) == 0) continue;
+      if (stencil != nullptr && !stencil_passes(state.stencil, stencil[lane])) {
+        stencil[lane] = stencil_result(state.stencil, state.stencil.on_fail, stencil[lane]);
+        continue;
+      }
+      const float clamped = values[lane] > 0.0f ? (values[lane] < 1.0f ? values[lane] : 1.0f) : 0.0f;
+      const std::uint32_t z = depth_bits(clamped, c_.depth_scale);
+      const bool pass = !state.depth.test || depth_passes(state.depth.compare, z, stored[lane]);
+      if (pass && state.depth.write) stored[lane] = z;
+      if (stencil != nullptr) {
+        const StencilOp op = pass ? state.stencil.on_pass : state.stencil.on_depth_fail;
+        stencil[lane] = stencil_result(state.stencil, op, stencil[lane]);
+      }
+      if (pass) passed = static_cast<std::uint8_t>(passed | 1 << lane);
+    }
+    return passed;
+  }
+
+  static bool depth_passes(Compare compare, std::uint32_t z, std::uint32_t stored) {
+    switch (compare) {
+      case Compare::never: return false;
+      case Compare::less: return z < stored;
+      case Compare::equal: return z == stored;
+      case Compare::less_equal: return z <= stored;
+      case Compare::greater: return z > stored;
+      case Compare::not_equal: return z != stored;
+      case Compare::greater_equal: return z >= stored;
+      case Compare::always: return true;
+    }
+    return true;
+  }
+
+  // Late writes went past the tiles' bounds: read them anew.
+  void refresh_bounds() {
+    if (!w_.state->depth.write) return;
+    int last = -1;
+    for (std::size_t q = 0; q < static_cast<std::size_t>(w_.batch.quad_count); ++q) {
+      const int block = w_.block[q];
+      if (block == last) continue;
+      last = block;
+      const auto* stored = reinterpret_cast<const std::int32_t*>(c_.depth->block(block));
+      LaneI lowest = load(stored), highest = lowest;
+      for (int i = kVectorLanes; i < samples_ * kBlockLanes; i += kVectorLanes) {
+        lowest = min(lowest, load(stored + i));
+        highest = max(highest, load(stored + i));
+      }
+      const auto index = static_cast<std::size_t>(block);
+      c_.depth->depth_min[index] = static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(DI(), lowest.v)));
+      c_.depth->depth_max[index] = static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(DI(), highest.v)));
+    }
+  }
+
+  const PassContext& c_;
+  BinWorker& w_;
+  const int samples_;
+};
+
+}  // namespace hwsim::pipeline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,158 @@
+#include "pipeline/reference/reference_shading.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "pipeline/emulate/material_views.h"
+#include "pipeline/reference/reference.h"
+#include "pipeline/shade/scalar_lane.h"
+#include "pipeline/shade/surface.h"
+#include "pipeline/shade/texture_sampler.h"
+
+namespace hwsim::pipeline {
+namespace {
+
+using ScalarSampler = TextureSampler<ScalarF, ScalarI, ScalarM>;
+
+// What the shading templates call, for one point on a surface.
+class ScalarShading {
+ public:
+  using F = ScalarF;
+  using I = ScalarI;
+  using M = ScalarM;
+
+  ScalarShading(const SurfaceHit& hit, const MaterialView& material, const ReferenceScene& occluders,
+                glm::vec3 to_shadowed_light)
+      : hit_(hit), material_(material), occluders_(occluders), to_shadowed_light_(to_shadowed_light) {
+    // SurfaceHit turns the normal of a back face around, and so does facing(): once is enough.
+    const glm::vec3 normal = hit.front_face ? hit.normal : -hit.normal;
+    put(SurfaceVaryings::kNormal, normal);
+    put(SurfaceVaryings::kPosition, hit.position);
+    put(SurfaceVaryings::kTangent, glm::vec3(hit.tangent));
+    put(SurfaceVaryings::kColor, glm::vec3(hit.color));
+    varyings_[SurfaceVaryings::kUv0] = hit.uv0.x;
+    varyings_[SurfaceVaryings::kUv0 + 1] = hit.uv0.y;
+    varyings_[SurfaceVaryings::kTangent + 3] = hit.tangent.w;
+    varyings_[SurfaceVaryings::kColor + 3] = hit.color.w;
+  }
+
+  M valid() const { return {true}; }
+  const MaterialView& material() const { return material_; }
+  F attr(int k) const { return varyings_[static_cast<std::size_t>(k)]; }
+  Vec3<F> attr3(int k) const { return {attr(k), attr(k + 1), attr(k + 2)}; }
+  F facing() const { return hit_.front_face ? 1.0f : -1.0f; }
+
+  // The emulator's materials read all textures at the first set of coordinates.
+  Vec4<F> sample_texture(const TextureView* texture, int) const {
+    std::uint64_t probes = 0;
+    return ScalarSampler(*texture, nullptr, valid())
+        .sample(hit_.uv0.x, hit_.uv0.y, hit_.uv0_dx.x, hit_.uv0_dx.y, hit_.uv0_dy.x, hit_.uv0_dy.y, probes);
+  }
+
+  template <class Body>
+  void branch(int, M mask, Body&& body) {
+    if (mask.v) body();
+  }
+  template <class Body>
+  void uniform_branch(int, bool condition, Body&& body) {
+    if (condition) body();
+  }
+  template <class Body>
+  void loop(int, int count, M mask, Body&& body) {
+    for (int i = 0; mask.v && i < count; ++i) body(i);
+  }
+  std::size_t loop_count(int count) const { return static_cast<std::size_t>(count); }
+
+  // A light below the surface adds nothing: no ray is shot for it.
+  F ray_visibility(glm::vec3 position, glm::vec3 normal) const {
+    if (glm::dot(normal, to_shadowed_light_) <= 0.0f) return 0.0f;
+    return occluders_.sees_sky(position, to_shadowed_light_) ? 1.0f : 0.0f;
+  }
+
+ private:
+  void put(int k, glm::vec3 v) {
+    for (int i = 0; i < 3; ++i) varyings_[static_cast<std::size_t>(k + i)] = v[i];
+  }
+
+  const SurfaceHit& hit_;
+  const MaterialView& material_;
+  const ReferenceScene& occluders_;
+  glm::vec3 to_shadowed_light_;
+  std::array<float, SurfaceVaryings::kFull> varyings_{};
+};
+
+// light_surface finds this one by its argument (not const: as exact as the template) instead of the shadow map.
+ScalarF shadow_visibility(ScalarShading& s, const LightingUniforms&, const Vec3<ScalarF>& position,
+                          const Vec3<ScalarF>& normal) {
+  return s.ray_visibility({position.x.v, position.y.v, position.z.v}, {normal.x.v, normal.y.v, normal.z.v});
+}
+
+struct SceneShading {
+  TextureStore textures;
+  MaterialViews materials;
+  LightingUniforms lighting;
+  glm::vec3 to_shadowed_light{0.0f};
+  bool full_varyings;
+
+  SceneShading(const Scene& scene, const GroundTruthOptions& options)
+      : textures(scene),
+        materials(scene, textures),
+        lighting(options.lighting
+                     ? *options.lighting
+                     : make_lighting(scene, scene.cameras.at(static_cast<std::size_t>(options.camera)))),
+        full_varyings(needs_full_varyings(scene)) {
+    const auto caster = std::find_if(lighting.directional.begin(), lighting.directional.end(),
+                                     [](const DirectionalLight& light) { return light.shadowed; });
+    const bool casts = options.shadows && caster != lighting.directional.end();
+    lighting.shadow_slot = casts ? 0 : -1;
+    if (casts) to_shadowed_light = caster->to_light;
+  }
+
+  glm::vec4 shade(const SurfaceHit& hit, const ReferenceScene& occluders) const {
+    ScalarShading s(hit, materials.view(hit.material), occluders, to_shadowed_light);
+    const MaterialSample<ScalarF> sample = sample_material(s, full_varyings);
+    const Surface<ScalarF> surface = make_surface(sample, s.attr3(SurfaceVaryings::kPosition), lighting.eye);
+    const Vec3<ScalarF> color = light_surface(s, lighting, surface, s.valid());
+    return {color.x.v, color.y.v, color.z.v, sample.base.w.v};
+  }
+
+  float finest_alpha(const AlphaQuery& query) const {
+    const MaterialView& material = materials.view(query.material);
+    const float alpha = material.base_color[3] * query.vertex_alpha;
+    const TextureView* texture = material.base_color_texture;
+    if (texture == nullptr) return alpha;
+    std::uint64_t probes = 0;
+    return alpha * ScalarSampler(*texture, nullptr, {true}).filter(query.uv0.x, query.uv0.y, 0.0f, probes).w.v;
+  }
+};
+
+ReferenceOptions reference_options(const GroundTruthOptions& options) {
+  ReferenceOptions reference;
+  reference.width = options.width;
+  reference.height = options.height;
+  reference.camera = options.camera;
+  reference.samples = options.samples;
+  reference.offsets_px = options.offsets_px;
+  reference.jobs = options.jobs;
+  reference.largest_sample_value = 1.0f;
+  const float samples = static_cast<float>(std::max(sample_count(reference), 1));
+  reference.footprint_scale = options.footprint_scale > 0.0f ? options.footprint_scale : 1.0f / std::sqrt(samples);
+  reference.progress = options.progress;
+  return reference;
+}
+
+}  // namespace
+
+Image render_ground_truth(const Scene& scene, const GroundTruthOptions& options) {
+  const SceneShading shading(scene, options);
+  const ReferenceScene traced(
+      scene, [&](const AlphaQuery& query) { return shading.finest_alpha(query); }, options.jobs);
+  return render_reference(traced, reference_options(options),
+                          [&](std::span<const SurfaceHit> hits, std::span<glm::vec4> colors) {
+                            for (std::size_t i = 0; i < hits.size(); ++i)
+                              colors[i] = shading.shade(hits[i], traced);
+                          });
+}
+
+}  // namespace hwsim::pipeline

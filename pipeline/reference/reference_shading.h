@@ -1,0 +1,36 @@
+#pragma once
+// The ground truth shaded by the emulator's own templates (shade/surface.h, shade/lighting.h) on a scalar lane: what
+// differs from an emulated frame is sampling, filtering of shadows and storage formats, never the material.
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "pipeline/image/image.h"
+#include "pipeline/scene/scene.h"
+#include "pipeline/shade/lighting.h"
+
+namespace hwsim::pipeline {
+
+struct GroundTruthOptions {
+  int width = 0;   ///< px
+  int height = 0;  ///< px
+  int camera = 0;  ///< index into Scene::cameras
+  int samples = 64;  ///< a pixel
+  /// Positions from the pixel's center, in pixels, x right, y down, the same in every pixel. Not empty: `samples` is
+  /// ignored.
+  std::vector<glm::vec2> offsets_px{};
+  /// Of a pixel, for texture filtering. 0: 1 / sqrt(samples), so that the samples' footprints together fill the pixel.
+  float footprint_scale = 0.0f;
+  int jobs = 1;
+  bool shadows = true;  ///< rays to the shadow-casting directional light; no light else casts any
+  /// Those of the frame that is compared (algos::frame_lighting); its shadow map is not used. None: make_lighting.
+  std::optional<LightingUniforms> lighting{};
+  std::function<void(double done_ratio)> progress{};  ///< (0, 1], one thread at a time
+};
+
+/// Linear, alpha 1. Samples are clamped to 1 before they are averaged, as in an 8-bit multisampled target. Mask
+/// materials are cut out at their textures' finest level: alpha that is averaged before the test moves outlines.
+/// Blend materials are composed by depth, so a frame that draws them out of order differs.
+Image render_ground_truth(const Scene& scene, const GroundTruthOptions& options);
+
+}  // namespace hwsim::pipeline

@@ -1,0 +1,171 @@
+#pragma once
+// Texture filtering on any lane type: the emulator's registers and the scalar of the ray-traced reference.
+#include <bit>
+#include <cstdint>
+
+#include "pipeline/shade/texture_view.h"
+#include "pipeline/shade/transcendental.h"
+#include "pipeline/shade/vec.h"
+
+namespace hwsim::pipeline {
+
+/// Samples one texture for the lanes of `valid` (helpers included: they fetch too).
+template <class F, class I, class M>
+class TextureSampler {
+ public:
+  TextureSampler(const TextureView& texture, TextureTracker* tracker, M valid)
+      : texture_(texture), tracker_(tracker), valid_(valid), valid_bits_(mask_bits(valid)) {}
+
+  /// u, v with their derivatives for one pixel to the right and down. Adds probes beyond one a lane to `extra_probes`.
+  Vec4<F> sample(F u, F v, F du_dx, F dv_dx, F du_dy, F dv_dy, std::uint64_t& extra_probes) const {
+    const F w(static_cast<float>(texture_.width[0])), h(static_cast<float>(texture_.height[0]));
+    const F x2 = du_dx * w * (du_dx * w) + dv_dx * h * (dv_dx * h);
+    const F y2 = du_dy * w * (du_dy * w) + dv_dy * h * (dv_dy * h);
+    const F major2 = max(x2, y2), minor2 = max(min(x2, y2), F(1e-12f));
+    const int limit = texture_.sampler.max_anisotropy;
+    if (limit <= 1) return filter(u, v, F(0.5f) * log2(major2), extra_probes);
+    const F ratio = min(sqrt(max(major2, F(1e-12f)) / minor2), F(static_cast<float>(limit)));
+    const F probes = max(floor(ratio + F(0.999f)), F(1.0f));
+    const F lod = F(0.5f) * log2(major2) - log2(probes);
+    const M x_major = x2 > y2;
+    return anisotropic(u, v, select(x_major, du_dx, du_dy), select(x_major, dv_dx, dv_dy), probes, lod, extra_probes);
+  }
+
+  /// One isotropic filter at a level of detail.
+  Vec4<F> filter(F u, F v, F lod, std::uint64_t& extra_probes) const {
+    const Sampler& s = texture_.sampler;
+    const M magnified = lod <= F(0.0f);
+    const F top(static_cast<float>(texture_.levels - 1));
+    const F clamped = min(max(lod, F(0.0f)), top);
+    if (s.mip == MipFilter::none) return level_filter(u, v, I(0), magnified);
+    if (s.mip == MipFilter::nearest) return level_filter(u, v, to_int(floor(clamped + F(0.5f))), magnified);
+    const F lower = floor(clamped);
+    const F fraction = clamped - lower;
+    const Vec4<F> fine = level_filter(u, v, to_int(lower), magnified);
+    const M mixed = fraction > F(0.0f);
+    if (!any(mixed & valid_)) return fine;
+    extra_probes += static_cast<std::uint64_t>(std::popcount(mask_bits(mixed) & valid_bits_));
+    const Vec4<F> coarse = level_filter(u, v, to_int(min(lower + F(1.0f), top)), magnified);
+    return fine + (coarse - fine) * fraction;
+  }
+
+ private:
+  Vec4<F> anisotropic(F u, F v, F axis_u, F axis_v, F probes, F lod, std::uint64_t& extra_probes) const {
+    Vec4<F> sum = {F(0.0f), F(0.0f), F(0.0f), F(0.0f)};
+    const F step = F(1.0f) / probes;
+    for (int i = 0; i < texture_.sampler.max_anisotropy; ++i) {
+      const F index(static_cast<float>(i));
+      const M runs = index < probes;
+      const std::uint32_t running = mask_bits(runs) & valid_bits_;
+      if (running == 0) break;
+      if (i > 0) extra_probes += static_cast<std::uint64_t>(std::popcount(running));
+      const F offset = (index + F(0.5f)) * step - F(0.5f);
+      const Vec4<F> c = filter(u + axis_u * offset, v + axis_v * offset, lod, extra_probes);
+      const F weight = select(runs, step, F(0.0f));
+      sum = sum + c * weight;
+    }
+    return sum;
+  }
+
+  Vec4<F> level_filter(F u, F v, I level, M magnified) const {
+    const I w = gather(texture_.width.data(), level), h = gather(texture_.height.data(), level);
+    const F x = wrap(u, texture_.sampler.wrap_u) * to_float(w);
+    const F y = wrap(v, texture_.sampler.wrap_v) * to_float(h);
+    const bool mag_linear = texture_.sampler.mag == Filter::linear, min_linear = texture_.sampler.min == Filter::linear;
+    if (!mag_linear && !min_linear) return nearest(x, y, w, h, level);
+    const Vec4<F> smooth = bilinear(x, y, w, h, level);
+    if (mag_linear && min_linear) return smooth;
+    const Vec4<F> sharp = nearest(x, y, w, h, level);
+    const M use_smooth = mag_linear ? magnified : !magnified;
+    return {select(use_smooth, smooth.x, sharp.x), select(use_smooth, smooth.y, sharp.y),
+            select(use_smooth, smooth.z, sharp.z), select(use_smooth, smooth.w, sharp.w)};
+  }
+
+  /// To [0, 1] for repeat and mirror; clamped modes keep the coordinate, within bounds that an int holds.
+  static F wrap(F c, Wrap mode) {
+    switch (mode) {
+      case Wrap::repeat: return c - floor(c);
+      case Wrap::mirrored_repeat: {
+        const F t = c - F(2.0f) * floor(c * F(0.5f));
+        return F(1.0f) - abs(F(1.0f) - t);
+      }
+      case Wrap::clamp_to_edge: return saturate_coordinate(c, 0.0f, 1.0f);
+      case Wrap::clamp_to_border: return saturate_coordinate(c, -1.0f, 2.0f);
+    }
+    return c;
+  }
+  static F saturate_coordinate(F c, float low, float high) { return min(max(c, F(low)), F(high)); }
+
+  /// The final clamp also keeps a coordinate that was not a number inside the level.
+  static I wrap_texel(I i, I size, Wrap mode) {
+    const I last = size - I(1);
+    if (mode == Wrap::repeat) {
+      const I raised = i + select(i < I(0), size, I(0));
+      i = raised - select(raised > last, size, I(0));
+    }
+    return min(max(i, I(0)), last);
+  }
+
+  Vec4<F> nearest(F x, F y, I w, I h, I level) const {
+    return texel(to_int(floor(x)), to_int(floor(y)), w, h, level);
+  }
+
+  Vec4<F> bilinear(F x, F y, I w, I h, I level) const {
+    const F left = floor(x - F(0.5f)), top = floor(y - F(0.5f));
+    const F fx = x - F(0.5f) - left, fy = y - F(0.5f) - top;
+    const I x0 = to_int(left), y0 = to_int(top), x1 = x0 + I(1), y1 = y0 + I(1);
+    const Vec4<F> c00 = texel(x0, y0, w, h, level), c10 = texel(x1, y0, w, h, level);
+    const Vec4<F> c01 = texel(x0, y1, w, h, level), c11 = texel(x1, y1, w, h, level);
+    const Vec4<F> upper = c00 + (c10 - c00) * fx, lower = c01 + (c11 - c01) * fx;
+    return upper + (lower - upper) * fy;
+  }
+
+  Vec4<F> texel(I x, I y, I w, I h, I level) const {
+    const I xi = wrap_texel(x, w, texture_.sampler.wrap_u), yi = wrap_texel(y, h, texture_.sampler.wrap_v);
+    const I tiles_x = gather(texture_.tiles_x.data(), level);
+    const I first = gather(texture_.first_texel.data(), level);
+    const I tile = shift_right<2>(yi) * tiles_x + shift_right<2>(xi);
+    const I index = first + shift_left<4>(tile) + shift_left<2>(yi & I(3)) + (xi & I(3));
+    const I safe = select(valid_, index, I(0));
+    track(safe);
+    const I code = gather(reinterpret_cast<const std::int32_t*>(texture_.texels), safe);
+    return border(decode(code), x, y, w, h);
+  }
+
+  Vec4<F> decode(I code) const {
+    const F scale(1.0f / 255.0f);
+    const I r = code & I(255), g = shift_right<8>(code) & I(255), b = shift_right<16>(code) & I(255);
+    const F a = to_float(shift_right<24>(code) & I(255)) * scale;
+    if (!texture_.srgb) return {to_float(r) * scale, to_float(g) * scale, to_float(b) * scale, a};
+    const float* table = srgb_decode_table().data();
+    return {gather(table, r), gather(table, g), gather(table, b), a};
+  }
+
+  Vec4<F> border(Vec4<F> c, I x, I y, I w, I h) const {
+    const Sampler& s = texture_.sampler;
+    if (s.wrap_u != Wrap::clamp_to_border && s.wrap_v != Wrap::clamp_to_border) return c;
+    M outside = F(1.0f) < F(0.0f);
+    if (s.wrap_u == Wrap::clamp_to_border) outside = outside | (x < I(0)) | (x > w - I(1));
+    if (s.wrap_v == Wrap::clamp_to_border) outside = outside | (y < I(0)) | (y > h - I(1));
+    return {select(outside, F(s.border_color.x), c.x), select(outside, F(s.border_color.y), c.y),
+            select(outside, F(s.border_color.z), c.z), select(outside, F(s.border_color.w), c.w)};
+  }
+
+  void track(I index) const {
+    if (tracker_ == nullptr) return;
+    std::uint32_t last = 0xffffffffu;
+    for_each_lane(index, valid_bits_, [&](std::int32_t texel) {
+      const auto line = static_cast<std::uint32_t>(texel) / kTexelsPerLine;
+      if (line == last) return;
+      tracker_->touch(texture_.first_line + line);
+      last = line;
+    });
+  }
+
+  const TextureView& texture_;
+  TextureTracker* tracker_;
+  M valid_;
+  std::uint32_t valid_bits_;
+};
+
+}  // namespace hwsim::pipeline

@@ -1,0 +1,99 @@
+// Every mistake ends in its exit status, one clear message with a code, and nothing written.
+#include <gtest/gtest.h>
+
+#include "cli/program.h"
+
+namespace hwsim::cli::test {
+namespace {
+
+struct Mistake {
+  std::string name;
+  std::string arguments;
+  int status;
+  std::string code;
+  std::string says;
+};
+
+void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.arguments; }
+
+class BadInput : public testing::TestWithParam<Mistake> {};
+
+TEST_P(BadInput, EndsInItsStatusAndMessageAndWritesNothing) {
+  const Workplace place;
+  place.write("triangle.gltf", kTriangleGltf);
+  place.write("cut.glb", std::string("glTF\2\0\0\0\377\0\0\0", 12));
+  place.write("bad.toml",
+              "schema = 1\nkind = \"gpu\"\nid = \"bad\"\nextends = \"gtx980\"\ncore_clock_mzh = 1000\n");
+  place.write("bad_run.toml",
+              "schema = 1\nkind = \"run\"\nscene = \"triangle.gltf\"\nwidht_px = 64\nheight_px = 0\n");
+  const std::string before = place.listing();
+  const Outcome outcome = place.hwsim(GetParam().arguments);
+  EXPECT_EQ(outcome.status, GetParam().status) << outcome.err;
+  EXPECT_NE(outcome.err.find("error[" + GetParam().code + "]"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find(GetParam().says), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("X001"), std::string::npos) << "a user's mistake shown as an internal error";
+  EXPECT_EQ(place.listing(), before);
+}
+
+const Mistake kMistakes[] = {
+    {"UnknownCommand", "rnu triangle.gltf", 2, "U001", "did you mean `run`"},
+    {"NoCommand", "", 2, "U002", "no command"},
+    {"UnknownFlag", "run triangle.gltf --techniqe none", 2, "U001", "did you mean `--technique`"},
+    {"MissingScene", "run", 2, "U002", "SCENE"},
+    {"FlagWithoutValue", "run triangle.gltf --engine", 2, "U004", "--engine"},
+    {"BadJobs", "run triangle.gltf --jobs 0", 2, "U003", "--jobs"},
+    {"BadFormat", "list gpus --format cvs", 2, "U003", "did you mean `csv`"},
+    {"BadColor", "list gpus --color purple", 2, "U003", "auto"},
+    {"ResolutionZero", "run triangle.gltf --resolution 0x0", 2, "U005", "1 to 16384"},
+    {"ResolutionHuge", "run triangle.gltf --resolution 100000x100000", 2, "U005", "1 to 16384"},
+    {"ResolutionNoNumber", "run triangle.gltf --resolution wide", 2, "U005", "WIDTHxHEIGHT"},
+    {"ResolutionOverflow", "run triangle.gltf --resolution 99999999999999999999x1", 2, "U005",
+     "WIDTHxHEIGHT"},
+    {"BadLights", "run triangle.gltf --lights 5000", 2, "U003", "--lights"},
+    {"BadSamples", "run triangle.gltf --reference 0", 2, "U003", "--reference"},
+    {"ListNothing", "list gpu", 2, "U003", "did you mean `gpus`"},
+    {"HelpOnNothing", "help Z999", 2, "U014", "Z999"},
+    {"UnknownTechnique", "run triangle.gltf -t msaa5x", 3, "T001", "did you mean `msaa"},
+    {"UnknownGpu", "run triangle.gltf -g gtx981", 3, "C016", "gtx980"},
+    {"UnknownScene", "run sponza_hal", 3, "S201", "sponza_hall"},
+    {"UnknownEngine", "run triangle.gltf --engine quue", 3, "U006", "did you mean `queue`"},
+    {"UnknownCamera", "run triangle.gltf --camera 7", 3, "U009", "index 0 to 0"},
+    {"MissingFile", "run missing.gltf", 3, "S001", "missing.gltf"},
+    {"DamagedGlb", "run cut.glb", 3, "S002", "cut.glb"},
+    {"SetWithoutValue", "run triangle.gltf --set gpu.core_clock_mhz", 3, "C020", "gpu.core_clock_mhz"},
+    {"SetUnknownGroup", "run triangle.gltf --set gup.core_clock_mhz=1", 3, "C020", "gpu"},
+    {"SetUnknownKey", "run triangle.gltf --set gpu.core_clock_mzh=1000", 3, "C012", "core_clock_mhz"},
+    {"SetUnknownSceneKey", "run triangle.gltf --set scene.point_light=3", 3, "C012", "point_lights"},
+    {"NegativeClock", "run triangle.gltf --set gpu.core_clock_mhz=-1", 3, "C014", "core_clock_mhz"},
+    {"WrongType", "run triangle.gltf --set gpu.core_clock_mhz=fast", 3, "C013", "core_clock_mhz"},
+    {"UnknownSkip", "run triangle.gltf --set emulator.skip=frustrum", 3, "U007", "did you mean `frustum`"},
+    {"UnknownTechniqueParameter", "run triangle.gltf -t msaa4x --set technique.zebra=2", 3, "U008", "zebra"},
+    {"UnknownKeyInFile", "config check bad.toml", 3, "C012", "bad.toml:5:1"},
+    {"UnknownKeyInOverlay", "run triangle.gltf --overlay bad.toml", 3, "C012", "bad.toml:5:1"},
+    {"UnknownKeyInRunFile", "run bad_run.toml", 3, "C012", "did you mean `width_px`"},
+    {"RangeInRunFile", "run bad_run.toml", 3, "C014", "bad_run.toml:5:"},
+    {"ShowNothing", "show gtx981", 3, "U016", "did you mean `gtx980`"},
+};
+
+INSTANTIATE_TEST_SUITE_P(, BadInput, testing::ValuesIn(kMistakes),
+                         [](const auto& info) { return info.param.name; });
+
+TEST(BadInputAtOnce, AllMistakesOfTheCommandLineAreReportedTogether) {
+  const Workplace place;
+  const Outcome outcome =
+      place.hwsim("run sponza_hall -t msaa5x -g gtx981 --engine quue --set gpu.core_clock_mhz=-1");
+  EXPECT_EQ(outcome.status, 3);
+  for (const char* code : {"T001", "C016", "U006"})
+    EXPECT_NE(outcome.err.find(code), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("errors, nothing was run"), std::string::npos) << outcome.err;
+}
+
+TEST(BadConfigFolder, IsNamed) {
+  const Workplace place;
+  const Outcome outcome = place.hwsim("list gpus", "HWSIM_CONFIG_DIR=/nowhere");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_NE(outcome.err.find("error[U012]"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+}  // namespace hwsim::cli::test

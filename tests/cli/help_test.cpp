@@ -1,0 +1,134 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "cli/program.h"
+
+namespace hwsim::cli::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kCommands = {
+    "",       "run",          "reference",   "list",        "show",          "scene",  "scene check",
+    "config", "config check", "config show", "config diff", "config schema", "doctor", "help",
+    "cache",  "cache list",   "cache prune", "completion"};
+
+std::vector<std::string> examples_of(const std::string& help) {
+  std::vector<std::string> examples;
+  std::istringstream lines(help);
+  std::string line;
+  std::getline(lines, line);
+  if (line != "Examples:") return {};
+  while (std::getline(lines, line) && line.rfind("  hwsim ", 0) == 0) examples.push_back(line);
+  return examples;
+}
+
+class Help : public testing::TestWithParam<std::string> {};
+
+TEST_P(Help, OpensWithExamplesThatRun) {
+  const Workplace place;
+  const Outcome help = place.hwsim(GetParam() + " --help");
+  ASSERT_EQ(help.status, 0) << help.err;
+  const std::vector<std::string> examples = examples_of(help.out);
+  EXPECT_GE(examples.size(), 2u) << help.out;
+  EXPECT_LE(examples.size(), 3u);
+  for (const std::string& example : examples) {
+    const Outcome outcome = place.shell(example);
+    EXPECT_EQ(outcome.status, 0) << example << "\n" << outcome.err;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(, Help, testing::ValuesIn(kCommands), [](const auto& info) {
+  return info.param.empty() ? std::string("top") : std::regex_replace(info.param, std::regex(" "), "_");
+});
+
+TEST(HelpTest, EveryCommandOfTheTopLevelIsTested) {
+  const Workplace place;
+  const std::string help = place.hwsim("--help").out;
+  std::istringstream lines(help.substr(help.find("Subcommands:")));
+  std::string line;
+  std::getline(lines, line);
+  size_t count = 0;
+  while (std::getline(lines, line) && !line.empty()) {
+    const std::string name = line.substr(2, line.find(' ', 2) - 2);
+    EXPECT_NE(std::find(kCommands.begin(), kCommands.end(), name), kCommands.end()) << name;
+    ++count;
+  }
+  EXPECT_GE(count, 10u);
+}
+
+// The target is 30 ms on an idle machine; the best of ten leaves out what other processes take.
+TEST(HelpTest, ComesWithinThirtyMilliseconds) {
+  const Workplace place;
+  double best_ms = 1e9;
+  for (int i = 0; i < 10; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    ASSERT_EQ(place.hwsim("--help").status, 0);
+    best_ms = std::min(
+        best_ms, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+  }
+  EXPECT_LT(best_ms, 30.0);
+}
+
+// A code that nobody explains sends the user to a dead end; an explanation of a code that is gone misleads.
+TEST(HelpTest, ExplainsExactlyTheCodesThatTheSourcesUse) {
+  const std::regex code("\"([A-Z][0-9]{3})\"");
+  std::set<std::string> used;
+  for (const char* folder : {"hwsim", "pipeline", "algos", "cost_models", "cli"}) {
+    if (!fs::exists(fs::path(HWSIM_SOURCE_DIR) / folder)) continue;
+    for (const fs::directory_entry& entry :
+         fs::recursive_directory_iterator(fs::path(HWSIM_SOURCE_DIR) / folder)) {
+      if (entry.path().extension() != ".cpp" || entry.path().filename() == "error_codes.cpp") continue;
+      std::ifstream file(entry.path());
+      std::ostringstream buffer;
+      buffer << file.rdbuf();
+      const std::string text = buffer.str();
+      for (std::sregex_iterator at(text.begin(), text.end(), code), end; at != end; ++at)
+        used.insert((*at)[1]);
+    }
+  }
+  const Workplace place;
+  std::set<std::string> explained;
+  for (const auto& row : nlohmann::json::parse(place.hwsim("help --json").out)) explained.insert(row["code"]);
+  for (const std::string& each : used) EXPECT_TRUE(explained.contains(each)) << each << " is not explained";
+  for (const std::string& each : explained) EXPECT_TRUE(used.contains(each)) << each << " is used nowhere";
+  for (const std::string& each : {std::string("C012"), std::string("u001")})
+    EXPECT_EQ(place.hwsim("help " + each).status, 0) << each;
+}
+
+TEST(CompletionTest, ScriptsAreValidInTheirShells) {
+  const Workplace place;
+  for (const std::string shell : {"bash", "zsh", "fish"}) {
+    const Outcome script = place.hwsim("completion " + shell);
+    ASSERT_EQ(script.status, 0);
+    place.write("script." + shell, script.out);
+    if (place.shell("command -v " + shell).status != 0) continue;
+    const Outcome outcome = place.shell(shell + " -n script." + shell);
+    EXPECT_EQ(outcome.status, 0) << shell << ": " << outcome.err;
+  }
+}
+
+TEST(CompletionTest, BashCompletesCommandsFlagsAndValues) {
+  const Workplace place;
+  place.write("complete.bash", place.hwsim("completion bash").out);
+  const auto complete = [&](const std::string& words, int index) {
+    return place
+        .shell("bash -c 'source ./complete.bash; COMP_WORDS=(" + words +
+               "); COMP_CWORD=" + std::to_string(index) + "; _hwsim; echo \"${COMPREPLY[@]}\"'")
+        .out;
+  };
+  EXPECT_EQ(complete("hwsim refer", 1), "reference\n");
+  EXPECT_NE(complete("hwsim run --tech", 2).find("--technique"), std::string::npos);
+  EXPECT_NE(complete("hwsim run --gpu gtx98", 3).find("gtx980"), std::string::npos);
+  EXPECT_NE(complete("hwsim config ch", 2).find("check"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace hwsim::cli::test

@@ -1,0 +1,110 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace hwsim::cli::test {
+namespace {
+
+using nlohmann::json;
+
+TEST(List, EveryCatalogIsListedInEveryFormat) {
+  const Workplace place;
+  for (const std::string what : {"gpus", "scenes", "techniques", "counters"}) {
+    const json rows = json::parse(place.hwsim("list " + what + " --json").out);
+    EXPECT_GT(rows.size(), 3u) << what;
+    const std::string csv = place.hwsim("list " + what + " --format csv").out;
+    EXPECT_EQ(csv.find("n/a"), std::string::npos) << what;
+    EXPECT_EQ(place.hwsim("list " + what + " --format md").out.rfind("| ", 0), 0u) << what;
+  }
+}
+
+TEST(List, FormatWritesToAFile) {
+  const Workplace place;
+  const Outcome outcome = place.hwsim("list gpus --format csv=gpus.csv --format md");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.out.rfind("| ", 0), 0u);
+  EXPECT_EQ(place.read("gpus.csv").rfind("id,title", 0), 0u);
+}
+
+TEST(List, PublishedTablesAreReadByRfc4180) {
+  const Workplace place;
+  std::filesystem::create_directories(place / "configs/gpus");
+  std::filesystem::create_directories(place / "configs/published");
+  place.write("configs/published/t.csv", "a,\"b,c\"\r\n\"x \"\"y\"\"\",\"two\r\nlines\"\r\n");
+  const json rows = json::parse(place.hwsim("show t --json", "HWSIM_CONFIG_DIR=configs").out);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0]["a"], "x \"y\"");
+  EXPECT_EQ(rows[0]["b,c"], "two\r\nlines");
+  EXPECT_EQ(json::parse(place.hwsim("list tables --json", "HWSIM_CONFIG_DIR=configs").out)[0]["rows"], 1);
+}
+
+TEST(Show, OriginSaysWhereAValueWasSet) {
+  const Workplace place;
+  const json rows = json::parse(place.hwsim("show gtx980 --origin --json --set gpu.core_clock_mhz=1000").out);
+  bool found = false;
+  for (const json& row : rows)
+    if (row["key"] == "core_clock_mhz") {
+      found = true;
+      EXPECT_EQ(row["value"], "1000.0");
+      EXPECT_EQ(row["origin"], "--set");
+    }
+  EXPECT_TRUE(found);
+}
+
+TEST(Config, ShownFileLoadsToTheSameNumbers) {
+  const Workplace place;
+  place.write("shown.toml", place.hwsim("config show gtx980 --origin").out);
+  EXPECT_EQ(place.hwsim("config check shown.toml").status, 0);
+  EXPECT_EQ(json::parse(place.hwsim("config diff gtx980 shown.toml --json").out), json::array());
+  EXPECT_NE(json::parse(place.hwsim("config diff gtx980 gtx470 --json").out), json::array());
+}
+
+TEST(Config, SchemaIsJson) {
+  const Workplace place;
+  EXPECT_TRUE(json::parse(place.hwsim("config schema").out).contains("properties"));
+}
+
+TEST(SceneCheck, CountsAndNotes) {
+  const Workplace place;
+  place.write("triangle.gltf", kTriangleGltf);
+  const Outcome outcome = place.hwsim("scene check triangle.gltf --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json rows = json::parse(outcome.out);
+  EXPECT_EQ(rows[0]["drawn_triangles"], 1);
+  EXPECT_FALSE(rows[0]["notes"].empty()) << "normals, a light and a camera were added";
+}
+
+TEST(Doctor, FindsThisInstallationHealthy) {
+  const Workplace place;
+  const Outcome outcome = place.hwsim("doctor --json");
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+  for (const json& row : json::parse(outcome.out)) EXPECT_EQ(row["state"], "ok") << row;
+}
+
+TEST(Doctor, FailsWhenAPartIsMissing) {
+  const Workplace place;
+  const Outcome outcome = place.hwsim("doctor --json", "HWSIM_CONFIG_DIR=/nowhere");
+  EXPECT_EQ(outcome.status, 1);
+}
+
+TEST(Cache, PruneRemovesOldFilesAndKeepsStrangers) {
+  const Workplace place;
+  const std::string environment = "HWSIM_CACHE=cache";
+  std::filesystem::create_directories(place / "cache/scenes");
+  place.write("cache/scenes/old.glb", "old");
+  place.write("cache/scenes/new.glb", "new");
+  place.write("cache/strange.txt", "not ours");
+  ASSERT_EQ(place.shell("touch -d '40 days ago' cache/scenes/old.glb").status, 0);
+  EXPECT_EQ(place.hwsim("cache prune --dry-run", environment).status, 0);
+  EXPECT_EQ(place.listing("cache/scenes"), "new.glb old.glb");
+  EXPECT_EQ(place.hwsim("cache prune", environment).status, 0);
+  EXPECT_EQ(place.listing("cache/scenes"), "new.glb");
+  EXPECT_EQ(place.hwsim("cache prune --all", environment).status, 0);
+  EXPECT_EQ(place.listing("cache"), "scenes strange.txt");
+  EXPECT_EQ(place.listing("cache/scenes"), "");
+}
+
+}  // namespace
+}  // namespace hwsim::cli::test

@@ -1,0 +1,211 @@
+// What a run prints and leaves behind.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace hwsim::cli::test {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kSmall = "run triangle.gltf --resolution 64x48 ";
+
+class RunTest : public testing::Test {
+ protected:
+  RunTest() { place.write("triangle.gltf", kTriangleGltf); }
+  Outcome run(const std::string& flags, const std::string& environment = "") {
+    return place.hwsim(kSmall + flags, environment);
+  }
+  Workplace place;
+};
+
+void expect_keys(const json& object, std::initializer_list<const char*> keys) {
+  for (const char* key : keys) EXPECT_TRUE(object.contains(key)) << key;
+}
+
+TEST_F(RunTest, JsonHasTheKeysOfTheContract) {
+  const Outcome outcome = run("-t msaa4x --json --reference 1 --out result");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json result = json::parse(outcome.out);
+  expect_keys(result, {"schema_version", "scene", "technique", "gpu", "engine", "resolution", "frame",
+                       "passes", "image", "emulation", "timing"});
+  EXPECT_EQ(result["technique"], "msaa4x");
+  EXPECT_EQ(result["gpu"], "gtx980");
+  EXPECT_EQ(result["engine"], "queue");
+  EXPECT_EQ(result["resolution"], json({64, 48}));
+  expect_keys(result["frame"],
+              {"time_ms", "interval_ms", "support", "memory_mib", "dram_mb", "shaded_samples"});
+  EXPECT_GT(result["frame"]["time_ms"], 0.0);
+  expect_keys(result["image"], {"psnr_db", "flip_mean", "rmse"});
+  expect_keys(result["emulation"], {"wall_s", "from_cache", "skipped"});
+  expect_keys(result["timing"], {"wall_s"});
+  ASSERT_FALSE(result["passes"].empty());
+  double sum_ms = 0.0;
+  for (const json& pass : result["passes"]) {
+    expect_keys(pass, {"name", "kind", "time_ms", "limiter", "units", "bytes", "counters"});
+    expect_keys(pass["units"], {"fe", "shader", "dram"});
+    expect_keys(pass["bytes"], {"depth", "color", "texture", "storage"});
+    expect_keys(pass["counters"], {"raster.fragments", "ps.invocations"});
+    sum_ms += pass["time_ms"].get<double>();
+  }
+  EXPECT_NEAR(sum_ms, result["frame"]["time_ms"].get<double>(), 1e-9 * sum_ms);
+  EXPECT_EQ(json::parse(place.read("result/result.json")), result);
+}
+
+TEST_F(RunTest, WritesTheFilesOfARunDirectory) {
+  const Outcome outcome = run("-t none --reference 1 --out result");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(
+      place.listing("result"),
+      "color.exr color.png counters.csv flip.exr flip.png gpu.toml heat_shading.png log.txt manifest.json "
+      "passes.csv reference.exr reference.png result.json run.toml trace.json");
+  EXPECT_EQ(place.listing(), "result triangle.gltf") << "something partial was left";
+  const json manifest = json::parse(place.read("result/manifest.json"));
+  expect_keys(manifest, {"version", "model_version", "commit", "compiler", "host", "argv", "overrides",
+                         "seed", "input_hashes", "wall_s", "fragments_per_s", "state"});
+  EXPECT_EQ(manifest["state"], "done");
+}
+
+TEST_F(RunTest, NoImageWritesNumbersOnly) {
+  ASSERT_EQ(run("--no-image --out result").status, 0);
+  EXPECT_EQ(place.listing("result"),
+            "counters.csv gpu.toml log.txt manifest.json passes.csv result.json run.toml trace.json");
+}
+
+TEST_F(RunTest, DefaultFolderIsLinkedAsLatest) {
+  ASSERT_EQ(run("--no-image").status, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(place / "runs/latest"));
+  EXPECT_TRUE(std::filesystem::exists(place / "runs/latest/result.json"));
+}
+
+TEST_F(RunTest, RunFileGivesTheSameNumbers) {
+  ASSERT_EQ(run("-t msaa4x --set gpu.core_clock_mhz=987 --lights 3 --no-image --out first").status, 0);
+  const Outcome again = place.hwsim("run first/run.toml --no-image --out second");
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(place.read("first/passes.csv"), place.read("second/passes.csv"));
+  EXPECT_EQ(place.read("first/run.toml"), place.read("second/run.toml"));
+  EXPECT_EQ(place.read("first/gpu.toml").find("987") == std::string::npos, false);
+}
+
+TEST_F(RunTest, NumberOfThreadsChangesNoByte) {
+  ASSERT_EQ(run("-t msaa4x --jobs 1 --out one").status, 0);
+  ASSERT_EQ(run("-t msaa4x --jobs 3 --out three").status, 0);
+  for (const char* file : {"/passes.csv", "/counters.csv", "/color.png", "/color.exr", "/trace.json"})
+    EXPECT_TRUE(place.read(std::string("one") + file) == place.read(std::string("three") + file)) << file;
+}
+
+TEST_F(RunTest, TraceHasSlicesAndCountersOnly) {
+  ASSERT_EQ(run("--no-image --out result").status, 0);
+  const json trace = json::parse(place.read("result/trace.json"));
+  size_t slices = 0, counters = 0;
+  for (const json& event : trace["traceEvents"]) {
+    const std::string phase = event["ph"];
+    EXPECT_TRUE(phase == "X" || phase == "C" || phase == "M") << phase;
+    slices += phase == "X";
+    counters += phase == "C";
+  }
+  EXPECT_GT(slices, 1u);
+  EXPECT_GT(counters, 1u);
+}
+
+TEST_F(RunTest, CsvHasOneHeaderAndRecordsOfItsLength) {
+  const Outcome outcome = run("--format csv --no-image --out result");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  size_t lines = 0, commas = 0;
+  for (size_t at = 0, end; at < outcome.out.size(); at = end + 2, ++lines) {
+    end = outcome.out.find("\r\n", at);
+    ASSERT_NE(end, std::string::npos) << "a line does not end in CRLF";
+    const std::string line = outcome.out.substr(at, end - at);
+    const auto count = static_cast<size_t>(std::count(line.begin(), line.end(), ','));
+    if (lines == 0) commas = count;
+    EXPECT_EQ(count, commas) << line;
+  }
+  EXPECT_GT(lines, 1u);
+}
+
+TEST_F(RunTest, HeadlineSaysThatItIsUncalibrated) {
+  const Outcome outcome = run("--no-image --out result");
+  EXPECT_NE(outcome.out.find(" ms uncalibrated"), std::string::npos) << outcome.out;
+}
+
+TEST_F(RunTest, SeveralTechniquesGiveOneSummary) {
+  const Outcome outcome = run("-t none,msaa4x -g gtx980 -g gtx470 --json --no-image --out result");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json results = json::parse(outcome.out)["results"];
+  ASSERT_EQ(results.size(), 4u);
+  EXPECT_EQ(results[2]["technique"], "msaa4x");
+  EXPECT_EQ(results[2]["gpu"], "gtx980");
+  EXPECT_EQ(place.listing("result"),
+            "log.txt manifest.json msaa4x@gtx470 msaa4x@gtx980 none@gtx470 none@gtx980 summary.csv");
+}
+
+TEST_F(RunTest, FasterMemoryIsNeverSlower) {
+  const auto time_ms = [&](const std::string& bandwidth) {
+    const Outcome outcome = run("-t msaa4x --json --no-image --set gpu.dram_bandwidth_gb_s=" + bandwidth +
+                                " --out bw" + bandwidth);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out)["frame"]["time_ms"].get<double>();
+  };
+  EXPECT_LE(time_ms("400"), time_ms("20"));
+}
+
+TEST_F(RunTest, ResultsAreNotOverwrittenUnasked) {
+  ASSERT_EQ(run("--no-image --out result").status, 0);
+  const std::string before = place.read("result/manifest.json");
+  const Outcome refused = run("--no-image --out result");
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_NE(refused.err.find("error[U013]"), std::string::npos) << refused.err;
+  EXPECT_EQ(place.read("result/manifest.json"), before);
+  EXPECT_EQ(run("--no-image --out result --force").status, 0);
+  EXPECT_NE(place.read("result/manifest.json"), before);
+}
+
+TEST_F(RunTest, ForceReplacesNoFolderOfSomebodyElse) {
+  std::filesystem::create_directory(place / "thesis");
+  place.write("thesis/chapter.txt", "precious");
+  const Outcome outcome = run("--no-image --out thesis --force");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_EQ(place.read("thesis/chapter.txt"), "precious");
+}
+
+TEST_F(RunTest, InterruptLeavesNothingAndEndsWith130) {
+  const Outcome outcome = place.shell(
+      "hwsim run triangle.gltf -t ssaa16x,ssaa16x,ssaa16x --resolution 2048x2048 --reference 64 --out result "
+      "& "
+      "sleep 0.7; kill -INT $!; wait $!");
+  EXPECT_EQ(outcome.status, 130) << outcome.err;
+  EXPECT_EQ(place.listing(), "triangle.gltf");
+}
+
+TEST_F(RunTest, StandardErrorIsPlainWithoutATerminal) {
+  const Outcome plain = run("--no-image --out a");
+  EXPECT_EQ(plain.err.find('\033'), std::string::npos);
+  EXPECT_EQ(plain.err.find('\r'), std::string::npos);
+  EXPECT_NE(plain.err.find("100 %"), std::string::npos) << plain.err;
+  EXPECT_EQ(run("--no-image --quiet --out b").err, "");
+}
+
+TEST(Color, IsAskedForRefusedAndForced) {
+  const Workplace place;
+  EXPECT_EQ(place.hwsim("run nothing.gltf", "NO_COLOR=1").err.find('\033'), std::string::npos);
+  EXPECT_NE(place.hwsim("run nothing.gltf --color always", "NO_COLOR=1").err.find('\033'), std::string::npos);
+  // A terminal that script(1) makes; NO_COLOR and TERM=dumb are obeyed on it.
+  const auto on_terminal = [&](const std::string& environment) {
+    return place.shell("script -qec '" + environment + " hwsim run nothing.gltf' /dev/null")
+               .out.find('\033') != std::string::npos;
+  };
+  if (place.shell("command -v script").status != 0) return;
+  EXPECT_TRUE(on_terminal("TERM=xterm"));
+  EXPECT_FALSE(on_terminal("TERM=xterm NO_COLOR=1"));
+  EXPECT_FALSE(on_terminal("TERM=dumb"));
+}
+
+TEST_F(RunTest, FirstLineComesBeforeTheSceneIsLoaded) {
+  const Outcome outcome = run("--no-image --out result");
+  EXPECT_EQ(outcome.err.rfind("plan: ", 0), 0u) << outcome.err;
+}
+
+}  // namespace
+}  // namespace hwsim::cli::test
