@@ -240,6 +240,7 @@ class BinShading : protected BinColor {
     batch.image_read_bytes = 0;
     const std::uint64_t lines_before = w_.texture_tracker.missed_lines;
     w_.program->run(batch, w_.uniforms);
+    w_.texture_tracker.end_batch();
     PassCounters& n = w_.counters();
     account_shading(batch, *w_.program, sample_rate, n);
     n.tex.touched_lines += w_.texture_tracker.missed_lines - lines_before;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
+#include <ctime>
 #include <memory>
 #include <set>
 
@@ -38,7 +38,9 @@ class FrameRunner {
       allocate(static_cast<int>(position));
       PassWork work = describe(pass, compiled_.barrier_before[position] != 0);
       const auto start = std::chrono::steady_clock::now();
+      const std::clock_t cpu_start = std::clock();
       run_pass(pass, work);
+      result.pass_cpu_s.push_back(static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC);
       result.pass_wall_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
       result.trace.passes.push_back(std::move(work));
       release(static_cast<int>(position));

@@ -21,8 +21,7 @@ class ComputeLanes {
 
   /// Pixels and samples that the invocations of this register work on; `valid`: those that work at all.
   ComputeLanes(GroupBatch& group, int first_lane, I x, I y, I sample, M valid)
-      : group_(group), first_(first_lane), x_(x), y_(y), sample_(sample), valid_(valid),
-        lanes_(static_cast<std::uint64_t>(__builtin_popcount(mask_bits(valid)))) {}
+      : group_(group), first_(first_lane), x_(x), y_(y), sample_(sample), valid_(valid), live_(valid) {}
 
   M valid() const { return valid_; }
   I pixel_x() const { return x_; }
@@ -31,8 +30,9 @@ class ComputeLanes {
 
   Vec4<F> load_image(int slot, I x, I y, I sample) {
     const GpuImage& image = *group_.resources->images[static_cast<std::size_t>(slot)];
-    group_.counters->tex.texels += lanes_;
-    group_.counters->mem.texture_read_bytes += lanes_ * info(image.format).bytes;
+    const auto lanes = static_cast<std::uint64_t>(__builtin_popcount(mask_bits(live_)));
+    group_.counters->tex.texels += lanes;
+    group_.counters->mem.texture_read_bytes += lanes * info(image.format).bytes;
     return load_texel(image, x, y, sample);
   }
 
@@ -46,7 +46,7 @@ class ComputeLanes {
     store(x, px);
     store(y, py);
     store(sample, ps);
-    const std::uint32_t bits = mask_bits(mask & valid_);
+    const std::uint32_t bits = mask_bits(mask & live_);
     for (std::uint32_t rest = bits; rest != 0; rest &= rest - 1) {
       const int lane = __builtin_ctz(rest);
       for (int w = 0; w < image.words; ++w)
@@ -56,27 +56,34 @@ class ComputeLanes {
         static_cast<std::uint64_t>(__builtin_popcount(bits)) * info(image.format).bytes;
   }
 
+  /// As FragmentLanes' (shade/fragment_lanes-inl.h).
   template <class Body>
   HWY_INLINE void branch(int block, M mask, Body&& body) {
-    const M live = mask & valid_;
+    const M outer = live_;
+    const M live = mask & outer;
     if (!any(live)) return;
+    live_ = live;
     count_trip(group_.blocks, block, first_, live);
     body();
+    live_ = outer;
   }
   template <class Body>
   HWY_INLINE void uniform_branch(int block, bool condition, Body&& body) {
     if (!condition) return;
-    count_trip(group_.blocks, block, first_, valid_);
+    count_trip(group_.blocks, block, first_, live_);
     body();
   }
   template <class Body>
   HWY_INLINE void loop(int block, int count, M mask, Body&& body) {
-    const M live = mask & valid_;
+    const M outer = live_;
+    const M live = mask & outer;
     if (!any(live)) return;
+    live_ = live;
     for (int i = 0; i < count; ++i) {
       count_trip(group_.blocks, block, first_, live);
       body(i);
     }
+    live_ = outer;
   }
   std::size_t loop_count(int count) const { return static_cast<std::size_t>(count); }
 
@@ -85,7 +92,7 @@ class ComputeLanes {
   int first_;
   I x_, y_, sample_;
   M valid_;
-  std::uint64_t lanes_;
+  M live_;  ///< of the valid ones, those in the current branch
 };
 
 /// Charges the blocks that a wave of `lanes` invocations went through, and starts the next wave.

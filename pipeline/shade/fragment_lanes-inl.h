@@ -49,6 +49,7 @@ class FragmentLanes {
   FragmentLanes(FragmentBatch& batch, int first_lane)
       : batch_(batch), first_(first_lane),
         valid_(mask_from_bits(batch.valid_lanes, first_lane)),
+        live_(valid_),
         active_(mask_from_bits(batch.active_lanes, first_lane)) {
     const int quads = batch.quad_count;
     const int first_quad = first_lane / 4;
@@ -83,7 +84,7 @@ class FragmentLanes {
 
   /// Filtered texture at attribute scalars (k, k + 1); level of detail from the derivatives at pixel centers.
   Vec4<F> sample_texture(const TextureView* texture, int k) {
-    const TextureSampler<F, I, M> sampler(*texture, batch_.texture_tracker, valid_);
+    const TextureSampler<F, I, M> sampler(*texture, batch_.texture_tracker, live_, first_);
     const F uc = interpolate(k, batch_.b1_center.data(), batch_.b2_center.data());
     const F vc = interpolate(k + 1, batch_.b1_center.data(), batch_.b2_center.data());
     return sampler.sample(attr(k), attr(k + 1), ddx(uc), ddx(vc), ddy(uc), ddy(vc), batch_.tex_bilinear_probes);
@@ -92,7 +93,7 @@ class FragmentLanes {
   /// Texel (x, y) of the pass's image slot, unfiltered; coordinates are clamped to the image.
   Vec4<F> load_image(int slot, I x, I y, I sample) {
     const GpuImage& image = *batch_.resources->images[static_cast<std::size_t>(slot)];
-    const auto lanes = static_cast<std::uint64_t>(__builtin_popcount(mask_bits(valid_)));
+    const auto lanes = static_cast<std::uint64_t>(__builtin_popcount(mask_bits(live_)));
     batch_.image_texels += lanes;
     batch_.image_read_bytes += lanes * info(image.format).bytes;
     return load_texel(image, x, y, sample);
@@ -100,37 +101,44 @@ class FragmentLanes {
   int image_width(int slot) const { return batch_.resources->images[static_cast<std::size_t>(slot)]->width; }
   int image_height(int slot) const { return batch_.resources->images[static_cast<std::size_t>(slot)]->height; }
 
-  /// Runs body() if a lane of `mask` is left, and charges those lanes with the block's operations.
+  /// Runs body() if a lane of `mask` is left, and charges those lanes with the block's operations. What the body does
+  /// is charged to the same lanes: the others are there because registers are wide.
   template <class Body>
   HWY_INLINE void branch(int block, M mask, Body&& body) {
-    const M live = mask & valid_;
+    const M outer = live_;
+    const M live = mask & outer;
     if (!any(live)) return;
+    live_ = live;
     count_trip(batch_.blocks, block, first_, live);
     body();
+    live_ = outer;
   }
   /// As branch, for a condition that is the same for all lanes.
   template <class Body>
   HWY_INLINE void uniform_branch(int block, bool condition, Body&& body) {
     if (!condition) return;
-    count_trip(batch_.blocks, block, first_, valid_);
+    count_trip(batch_.blocks, block, first_, live_);
     body();
   }
   /// body(i) for i in [0, count), the lanes of `mask`; charged for each iteration.
   template <class Body>
   HWY_INLINE void loop(int block, int count, M mask, Body&& body) {
-    const M live = mask & valid_;
+    const M outer = live_;
+    const M live = mask & outer;
     if (!any(live)) return;
+    live_ = live;
     for (int i = 0; i < count; ++i) {
       count_trip(batch_.blocks, block, first_, live);
       body(i);
     }
+    live_ = outer;
   }
 
   /// The number of elements of a uniform array: at least one where a shader is only counted.
   std::size_t loop_count(int count) const { return static_cast<std::size_t>(count); }
 
   void discard(M mask) {
-    batch_.discarded_lanes |= static_cast<std::uint64_t>(mask_bits(mask & active_)) << first_;
+    batch_.discarded_lanes |= static_cast<std::uint64_t>(mask_bits(mask & active_ & live_)) << first_;
   }
   void output(int target, const Vec4<F>& color) {
     store(color.x, batch_.color[target][0] + first_);
@@ -169,7 +177,9 @@ class FragmentLanes {
 
   FragmentBatch& batch_;
   int first_;
-  M valid_, active_;
+  M valid_;
+  M live_;  ///< of the valid ones, those in the current branch
+  M active_;
   bool one_triangle_ = true;
 };
 

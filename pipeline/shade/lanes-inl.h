@@ -118,12 +118,15 @@ HWY_INLINE LaneM mask_from_bits(std::uint64_t bits, int first_lane) {
 }
 #endif
 
-/// body(value) for the lanes of `bits`, in order.
+/// body(lane, value) for the lanes of `bits`, in order.
 template <class Body>
 HWY_INLINE void for_each_lane(LaneI a, std::uint32_t bits, Body&& body) {
   HWY_ALIGN std::int32_t values[kVectorLanes];
   store(a, values);
-  for (; bits != 0; bits &= bits - 1) body(values[__builtin_ctz(bits)]);
+  for (; bits != 0; bits &= bits - 1) {
+    const int lane = __builtin_ctz(bits);
+    body(lane, values[lane]);
+  }
 }
 
 // Coarse derivatives: one value for a quad, from its top left lane's neighbors.

@@ -75,7 +75,7 @@ inline ScalarI gather(const std::int32_t* base, ScalarI index) { return base[ind
 inline std::uint32_t mask_bits(ScalarM m) { return m.v ? 1u : 0u; }
 template <class Body>
 void for_each_lane(ScalarI a, std::uint32_t bits, Body&& body) {
-  if (bits != 0) body(a.v);
+  if (bits != 0) body(0, a.v);
 }
 
 }  // namespace hwsim::pipeline

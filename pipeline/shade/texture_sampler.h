@@ -9,12 +9,14 @@
 
 namespace hwsim::pipeline {
 
-/// Samples one texture for the lanes of `valid` (helpers included: they fetch too).
+/// Samples one texture for the lanes of `valid` (helpers included: they fetch too). A lane fetches what it needs itself,
+/// not what its neighbors in a register need: otherwise counts would depend on the register's width.
 template <class F, class I, class M>
 class TextureSampler {
  public:
-  TextureSampler(const TextureView& texture, TextureTracker* tracker, M valid)
-      : texture_(texture), tracker_(tracker), valid_(valid), valid_bits_(mask_bits(valid)) {}
+  /// `first_lane`: of the register within its batch.
+  TextureSampler(const TextureView& texture, TextureTracker* tracker, M valid, int first_lane = 0)
+      : texture_(texture), tracker_(tracker), valid_(valid), first_lane_(first_lane) {}
 
   /// u, v with their derivatives for one pixel to the right and down. Adds probes beyond one a lane to
   /// `extra_probes`.
@@ -35,50 +37,52 @@ class TextureSampler {
 
   /// One isotropic filter at a level of detail.
   Vec4<F> filter(F u, F v, F lod, std::uint64_t& extra_probes) const {
+    return filter_lanes(u, v, lod, valid_, extra_probes);
+  }
+
+ private:
+  Vec4<F> filter_lanes(F u, F v, F lod, M lanes, std::uint64_t& extra_probes) const {
     const Sampler& s = texture_.sampler;
     const M magnified = lod <= F(0.0f);
     const F top(static_cast<float>(texture_.levels - 1));
     const F clamped = min(max(lod, F(0.0f)), top);
-    if (s.mip == MipFilter::none) return level_filter(u, v, I(0), magnified);
-    if (s.mip == MipFilter::nearest) return level_filter(u, v, to_int(floor(clamped + F(0.5f))), magnified);
+    if (s.mip == MipFilter::none) return level_filter(u, v, I(0), magnified, lanes);
+    if (s.mip == MipFilter::nearest) return level_filter(u, v, to_int(floor(clamped + F(0.5f))), magnified, lanes);
     const F lower = floor(clamped);
     const F fraction = clamped - lower;
-    const Vec4<F> fine = level_filter(u, v, to_int(lower), magnified);
-    const M mixed = fraction > F(0.0f);
-    if (!any(mixed & valid_)) return fine;
-    extra_probes += static_cast<std::uint64_t>(std::popcount(mask_bits(mixed) & valid_bits_));
-    const Vec4<F> coarse = level_filter(u, v, to_int(min(lower + F(1.0f), top)), magnified);
+    const Vec4<F> fine = level_filter(u, v, to_int(lower), magnified, lanes);
+    const M mixed = (fraction > F(0.0f)) & lanes;
+    if (!any(mixed)) return fine;
+    extra_probes += static_cast<std::uint64_t>(std::popcount(mask_bits(mixed)));
+    const Vec4<F> coarse = level_filter(u, v, to_int(min(lower + F(1.0f), top)), magnified, mixed);
     return fine + (coarse - fine) * fraction;
   }
 
- private:
   Vec4<F> anisotropic(F u, F v, F axis_u, F axis_v, F probes, F lod, std::uint64_t& extra_probes) const {
     Vec4<F> sum = {F(0.0f), F(0.0f), F(0.0f), F(0.0f)};
     const F step = F(1.0f) / probes;
     for (int i = 0; i < texture_.sampler.max_anisotropy; ++i) {
       const F index(static_cast<float>(i));
-      const M runs = index < probes;
-      const std::uint32_t running = mask_bits(runs) & valid_bits_;
-      if (running == 0) break;
-      if (i > 0) extra_probes += static_cast<std::uint64_t>(std::popcount(running));
+      const M runs = (index < probes) & valid_;
+      if (!any(runs)) break;
+      if (i > 0) extra_probes += static_cast<std::uint64_t>(std::popcount(mask_bits(runs)));
       const F offset = (index + F(0.5f)) * step - F(0.5f);
-      const Vec4<F> c = filter(u + axis_u * offset, v + axis_v * offset, lod, extra_probes);
+      const Vec4<F> c = filter_lanes(u + axis_u * offset, v + axis_v * offset, lod, runs, extra_probes);
       const F weight = select(runs, step, F(0.0f));
       sum = sum + c * weight;
     }
     return sum;
   }
 
-  Vec4<F> level_filter(F u, F v, I level, M magnified) const {
+  Vec4<F> level_filter(F u, F v, I level, M magnified, M lanes) const {
     const I w = gather(texture_.width.data(), level), h = gather(texture_.height.data(), level);
     const F x = wrap(u, texture_.sampler.wrap_u) * to_float(w);
     const F y = wrap(v, texture_.sampler.wrap_v) * to_float(h);
-    const bool mag_linear = texture_.sampler.mag == Filter::linear,
-               min_linear = texture_.sampler.min == Filter::linear;
-    if (!mag_linear && !min_linear) return nearest(x, y, w, h, level);
-    const Vec4<F> smooth = bilinear(x, y, w, h, level);
+    const bool mag_linear = texture_.sampler.mag == Filter::linear, min_linear = texture_.sampler.min == Filter::linear;
+    if (!mag_linear && !min_linear) return nearest(x, y, w, h, level, lanes);
+    const Vec4<F> smooth = bilinear(x, y, w, h, level, lanes);
     if (mag_linear && min_linear) return smooth;
-    const Vec4<F> sharp = nearest(x, y, w, h, level);
+    const Vec4<F> sharp = nearest(x, y, w, h, level, lanes);
     const M use_smooth = mag_linear ? magnified : !magnified;
     return {select(use_smooth, smooth.x, sharp.x), select(use_smooth, smooth.y, sharp.y),
             select(use_smooth, smooth.z, sharp.z), select(use_smooth, smooth.w, sharp.w)};
@@ -112,28 +116,28 @@ class TextureSampler {
     return min(max(i, I(0)), last);
   }
 
-  Vec4<F> nearest(F x, F y, I w, I h, I level) const {
-    return texel(to_int(floor(x)), to_int(floor(y)), w, h, level);
+  Vec4<F> nearest(F x, F y, I w, I h, I level, M lanes) const {
+    return texel(to_int(floor(x)), to_int(floor(y)), w, h, level, lanes);
   }
 
-  Vec4<F> bilinear(F x, F y, I w, I h, I level) const {
+  Vec4<F> bilinear(F x, F y, I w, I h, I level, M lanes) const {
     const F left = floor(x - F(0.5f)), top = floor(y - F(0.5f));
     const F fx = x - F(0.5f) - left, fy = y - F(0.5f) - top;
     const I x0 = to_int(left), y0 = to_int(top), x1 = x0 + I(1), y1 = y0 + I(1);
-    const Vec4<F> c00 = texel(x0, y0, w, h, level), c10 = texel(x1, y0, w, h, level);
-    const Vec4<F> c01 = texel(x0, y1, w, h, level), c11 = texel(x1, y1, w, h, level);
+    const Vec4<F> c00 = texel(x0, y0, w, h, level, lanes), c10 = texel(x1, y0, w, h, level, lanes);
+    const Vec4<F> c01 = texel(x0, y1, w, h, level, lanes), c11 = texel(x1, y1, w, h, level, lanes);
     const Vec4<F> upper = c00 + (c10 - c00) * fx, lower = c01 + (c11 - c01) * fx;
     return upper + (lower - upper) * fy;
   }
 
-  Vec4<F> texel(I x, I y, I w, I h, I level) const {
+  Vec4<F> texel(I x, I y, I w, I h, I level, M lanes) const {
     const I xi = wrap_texel(x, w, texture_.sampler.wrap_u), yi = wrap_texel(y, h, texture_.sampler.wrap_v);
     const I tiles_x = gather(texture_.tiles_x.data(), level);
     const I first = gather(texture_.first_texel.data(), level);
     const I tile = shift_right<2>(yi) * tiles_x + shift_right<2>(xi);
     const I index = first + shift_left<4>(tile) + shift_left<2>(yi & I(3)) + (xi & I(3));
-    const I safe = select(valid_, index, I(0));
-    track(safe);
+    const I safe = select(lanes, index, I(0));
+    track(safe, mask_bits(lanes));
     const I code = gather(reinterpret_cast<const std::int32_t*>(texture_.texels), safe);
     return border(decode(code), x, y, w, h);
   }
@@ -157,21 +161,17 @@ class TextureSampler {
             select(outside, F(s.border_color.z), c.z), select(outside, F(s.border_color.w), c.w)};
   }
 
-  void track(I index) const {
+  void track(I index, std::uint32_t lanes) const {
     if (tracker_ == nullptr) return;
-    std::uint32_t last = 0xffffffffu;
-    for_each_lane(index, valid_bits_, [&](std::int32_t texel) {
-      const auto line = static_cast<std::uint32_t>(texel) / kTexelsPerLine;
-      if (line == last) return;
-      tracker_->touch(texture_.first_line + line);
-      last = line;
+    for_each_lane(index, lanes, [&](int lane, std::int32_t texel) {
+      tracker_->use((first_lane_ + lane) / 4, texture_.first_line + static_cast<std::uint32_t>(texel) / kTexelsPerLine);
     });
   }
 
   const TextureView& texture_;
   TextureTracker* tracker_;
   M valid_;
-  std::uint32_t valid_bits_;
+  int first_lane_;
 };
 
 }  // namespace hwsim::pipeline

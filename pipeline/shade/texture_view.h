@@ -44,9 +44,22 @@ struct TextureTracker {
   std::array<std::array<std::uint32_t, kWays>, kSets> tags;
   std::uint64_t missed_lines = 0;
   std::vector<std::uint64_t>* used_lines = nullptr;  ///< a bit a line, one set a worker
+  std::array<std::vector<std::uint32_t>, 16> batch_lines;  ///< of each quad of the batch that is being shaded, in order
 
   void reset() {
     for (auto& set : tags) set.fill(0xffffffffu);
+  }
+  /// Quads that share a register fetch in turn, others after each other: the cache meets a batch's lines quad by quad,
+  /// whatever the register's width.
+  void use(int quad, std::uint32_t line) {
+    std::vector<std::uint32_t>& lines = batch_lines[static_cast<std::size_t>(quad)];
+    if (lines.empty() || lines.back() != line) lines.push_back(line);
+  }
+  void end_batch() {
+    for (std::vector<std::uint32_t>& lines : batch_lines) {
+      for (const std::uint32_t line : lines) touch(line);
+      lines.clear();
+    }
   }
   void touch(std::uint32_t line) {
     auto& set = tags[line % kSets];

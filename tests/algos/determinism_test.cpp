@@ -31,33 +31,44 @@ class Determinism : public ::testing::TestWithParam<std::string> {
   }
 };
 
-std::string signature(const Emulation& e) {
-  std::uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a
-  const auto add = [&](const void* data, std::size_t size) {
-    for (std::size_t i = 0; i < size; ++i) hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 0x100000001b3ull;
-  };
-  add(e.color.pixels.data(), e.color.pixels.size() * sizeof(glm::vec4));
-  for (const PassWork& pass : e.trace.passes)
-    for (const PassCounters& chunk : pass.chunks) add(&chunk, sizeof(chunk));
-  return std::to_string(hash);
+std::uint64_t fnv1a(const void* data, std::size_t size, std::uint64_t hash = 0xcbf29ce484222325ull) {
+  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 0x100000001b3ull;
+  return hash;
 }
 
-void meet_signature(const std::string& key, const std::string& value) {
+/// Hashes of the image and of every chunk, and the frame's counters by name.
+std::map<std::string, std::uint64_t> signature(const FrameSetup& setup, const Emulation& e) {
+  const std::string key = setup.technique + "/" + setup.scene + "/";
+  std::map<std::string, std::uint64_t> all;
+  all[key + "image"] = fnv1a(e.color.pixels.data(), e.color.pixels.size() * sizeof(glm::vec4));
+  std::uint64_t& chunks = all[key + "chunks"];
+  for (const PassWork& pass : e.trace.passes)
+    for (const PassCounters& chunk : pass.chunks) chunks = fnv1a(&chunk, sizeof(chunk), chunks);
+  const PassCounters sum = total(e.trace);
+  for (std::size_t i = 0; i < kCounterCount; ++i) all[key + std::string(counter_catalog()[i].id)] = values(sum)[i];
+  return all;
+}
+
+void meet_signature(const std::map<std::string, std::uint64_t>& found) {
   const char* path = std::getenv("HWSIM_SIGNATURE_FILE");
   if (path == nullptr) return;
+  std::map<std::string, std::uint64_t> known;
   std::ifstream in(path);
-  for (std::string name, known; in >> name >> known;) {
-    if (name != key) continue;
-    EXPECT_EQ(known, value) << key << ": another build gave another result";
-    return;
+  std::uint64_t value = 0;
+  for (std::string name; in >> name >> value;) known[name] = value;
+  std::ofstream out(path, std::ios::app);
+  for (const auto& [name, number] : found) {
+    if (const auto before = known.find(name); before != known.end())
+      EXPECT_EQ(before->second, number) << name << ": another build gave another result";
+    else
+      out << name << " " << number << "\n";
   }
-  std::ofstream(path, std::ios::app) << key << " " << value << "\n";
 }
 
 TEST_P(Determinism, ThreadsChangeNothing) {
   for (const FrameSetup& setup : setups()) {
     const Emulation one = run_frame(setup, {});
-    meet_signature(setup.technique + "/" + setup.scene, signature(one));
+    meet_signature(signature(setup, one));
     for (const int jobs : {2, 3}) {
       EmulationOptions options;
       options.jobs = jobs;
