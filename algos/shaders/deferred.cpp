@@ -1,17 +1,17 @@
 #include "algos/shaders/deferred.h"
 
-#include "algos/shaders/gbuffer.h"
-#include "pipeline/shade/count_fragment.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "algos/shaders/deferred.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include "algos/shaders/gbuffer-inl.h"
+#include "pipeline/shade/count_fragment-inl.h"
 #include "pipeline/shade/fragment_lanes-inl.h"
 
-#ifndef HWSIM_ALGOS_DEFERRED_SHADERS_
-#define HWSIM_ALGOS_DEFERRED_SHADERS_
-namespace hwsim::algos {
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::algos::HWY_NAMESPACE {
+namespace lanes = pipeline::HWY_NAMESPACE;
 
 // Derivatives: lanes have their own, the counting type charges one subtraction.
 inline pipeline::CountF ddx(pipeline::CountF a) { return min(a, a); }
@@ -24,7 +24,7 @@ struct GBufferShader {
   static void run(S& s, const GBufferUniforms& u) {
     using F = typename S::F;
     using V = pipeline::SurfaceVaryings;
-    const auto m = pipeline::sample_material(s, u.full_varyings);
+    const auto m = lanes::sample_material(s, u.full_varyings);
     if constexpr (kAlphaTest) s.discard(m.base.w < F(s.material().alpha_cutoff));
     const auto p = s.attr3(V::kPosition);
     const glm::mat4& v = u.view_from_world;
@@ -63,12 +63,6 @@ struct DeferredLightShader {
   }
 };
 
-}  // namespace hwsim::algos
-#endif
-
-HWY_BEFORE_NAMESPACE();
-namespace hwsim::algos::HWY_NAMESPACE {
-namespace lanes = pipeline::HWY_NAMESPACE;
 void run_gbuffer(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<GBufferShader<false>>(b, u); }
 void run_gbuffer_mask(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<GBufferShader<true>>(b, u); }
 void run_classify(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<ClassifyShader>(b, u); }
@@ -94,7 +88,7 @@ void call_light(FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_ligh
 template <bool kAlphaTest>
 FragmentProgram describe_gbuffer(bool full, void (*run)(FragmentBatch&, const void*)) {
   FragmentProgram program =
-      pipeline::describe_fragment_shader<GBufferShader<kAlphaTest>>(kAlphaTest ? "gbuffer_alpha_test" : "gbuffer", run);
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::GBufferShader<kAlphaTest>>(kAlphaTest ? "gbuffer_alpha_test" : "gbuffer", run);
   program.varying_scalars = full ? pipeline::SurfaceVaryings::kFull : pipeline::SurfaceVaryings::kBasic;
   program.can_discard = kAlphaTest;
   return program;
@@ -110,7 +104,7 @@ const FragmentProgram& gbuffer_program(bool full_varyings, bool alpha_test) {
 
 const FragmentProgram& classify_program() {
   static const FragmentProgram program = [] {
-    FragmentProgram p = pipeline::describe_fragment_shader<ClassifyShader>("classify", call_classify);
+    FragmentProgram p = pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::ClassifyShader>("classify", call_classify);
     p.can_discard = true;
     return p;
   }();
@@ -119,7 +113,7 @@ const FragmentProgram& classify_program() {
 
 const FragmentProgram& deferred_light_program() {
   static const FragmentProgram program =
-      pipeline::describe_fragment_shader<DeferredLightShader>("deferred_light", call_light);
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::DeferredLightShader>("deferred_light", call_light);
   return program;
 }
 

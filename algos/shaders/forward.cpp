@@ -1,17 +1,17 @@
 #include "algos/shaders/forward.h"
 
-#include "pipeline/shade/count_fragment.h"
-#include "pipeline/shade/surface.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "algos/shaders/forward.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include "pipeline/shade/count_fragment-inl.h"
+#include "pipeline/shade/surface-inl.h"
 #include "pipeline/shade/fragment_lanes-inl.h"
 
-#ifndef HWSIM_ALGOS_FORWARD_SHADERS_
-#define HWSIM_ALGOS_FORWARD_SHADERS_
-namespace hwsim::algos {
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::algos::HWY_NAMESPACE {
+namespace lanes = pipeline::HWY_NAMESPACE;
 
 template <bool kAlphaTest>
 struct ForwardShader {
@@ -19,7 +19,7 @@ struct ForwardShader {
   template <class S>
   static void run(S& s, const ForwardUniforms& u) {
     using F = typename S::F;
-    auto material = pipeline::sample_material(s, u.full_varyings);
+    auto material = lanes::sample_material(s, u.full_varyings);
     auto lit = s.valid();
     if constexpr (kAlphaTest) {
       const auto dropped = material.base.w < F(s.material().alpha_cutoff);
@@ -27,8 +27,8 @@ struct ForwardShader {
       lit = lit & !dropped;
     }
     const auto position = s.attr3(pipeline::SurfaceVaryings::kPosition);
-    const auto surface = pipeline::make_surface(material, position, u.lighting.eye);
-    const auto color = pipeline::light_surface(s, u.lighting, surface, lit);
+    const auto surface = lanes::make_surface(material, position, u.lighting.eye);
+    const auto color = lanes::light_surface(s, u.lighting, surface, lit);
     s.output(0, {color.x, color.y, color.z, material.base.w});
   }
 };
@@ -38,16 +38,10 @@ struct AlphaTestShader {
   template <class S>
   static void run(S& s, const AlphaTestUniforms&) {
     using F = typename S::F;
-    s.discard(pipeline::sample_alpha(s, 0) < F(s.material().alpha_cutoff));
+    s.discard(lanes::sample_alpha(s, 0) < F(s.material().alpha_cutoff));
   }
 };
 
-}  // namespace hwsim::algos
-#endif
-
-HWY_BEFORE_NAMESPACE();
-namespace hwsim::algos::HWY_NAMESPACE {
-namespace lanes = pipeline::HWY_NAMESPACE;
 void run_forward(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<ForwardShader<false>>(b, u); }
 void run_forward_mask(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<ForwardShader<true>>(b, u); }
 void run_alpha_test(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<AlphaTestShader>(b, u); }
@@ -63,7 +57,7 @@ HWY_EXPORT(run_alpha_test);
 namespace {
 template <bool kAlphaTest>
 pipeline::FragmentProgram describe_forward(bool full, void (*run)(pipeline::FragmentBatch&, const void*)) {
-  pipeline::FragmentProgram program = pipeline::describe_fragment_shader<ForwardShader<kAlphaTest>>(
+  pipeline::FragmentProgram program = pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::ForwardShader<kAlphaTest>>(
       kAlphaTest ? "forward_alpha_test" : "forward", run);
   program.varying_scalars = full ? pipeline::SurfaceVaryings::kFull : pipeline::SurfaceVaryings::kBasic;
   program.can_discard = kAlphaTest;
@@ -83,7 +77,7 @@ const pipeline::FragmentProgram& forward_program(bool full_varyings, bool alpha_
 
 const pipeline::FragmentProgram& alpha_test_program() {
   static const pipeline::FragmentProgram program = [] {
-    pipeline::FragmentProgram p = pipeline::describe_fragment_shader<AlphaTestShader>("alpha_test", call_alpha_test);
+    pipeline::FragmentProgram p = pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::AlphaTestShader>("alpha_test", call_alpha_test);
     p.varying_scalars = 2;
     p.can_discard = true;
     return p;

@@ -1,16 +1,16 @@
 #include "algos/shaders/post.h"
 
-#include "pipeline/shade/count_fragment.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "algos/shaders/post.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include "pipeline/shade/count_fragment-inl.h"
 #include "pipeline/shade/fragment_lanes-inl.h"
 
-#ifndef HWSIM_ALGOS_POST_SHADERS_
-#define HWSIM_ALGOS_POST_SHADERS_
-namespace hwsim::algos {
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::algos::HWY_NAMESPACE {
+namespace lanes = pipeline::HWY_NAMESPACE;
 
 struct DownsampleShader {
   using Uniforms = DownsampleUniforms;
@@ -19,9 +19,9 @@ struct DownsampleShader {
     using F = typename S::F;
     using I = typename S::I;
     const F zero(0.0f);
-    pipeline::Vec4<F> sum = {zero, zero, zero, zero};
+    lanes::Vec4<F> sum = {zero, zero, zero, zero};
     const I x = s.pixel_x() * I(u.factor), y = s.pixel_y() * I(u.factor);
-    s.loop(1, u.factor * u.factor, s.valid(), [&](int i) {
+    s.loop(1, u.factor * u.factor, s.valid(), [&](int i) HWY_ATTR {
       sum = sum + s.load_image(0, x + I(i % u.factor), y + I(i / u.factor), I(0));
     });
     s.output(0, sum * F(1.0f / static_cast<float>(u.factor * u.factor)));
@@ -38,12 +38,6 @@ struct ScaleShader {
   }
 };
 
-}  // namespace hwsim::algos
-#endif
-
-HWY_BEFORE_NAMESPACE();
-namespace hwsim::algos::HWY_NAMESPACE {
-namespace lanes = pipeline::HWY_NAMESPACE;
 void run_downsample(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<DownsampleShader>(b, u); }
 void run_scale(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<ScaleShader>(b, u); }
 }  // namespace hwsim::algos::HWY_NAMESPACE
@@ -55,13 +49,13 @@ HWY_EXPORT(run_downsample);
 HWY_EXPORT(run_scale);
 
 const pipeline::FragmentProgram& downsample_program() {
-  static const pipeline::FragmentProgram program = pipeline::describe_fragment_shader<DownsampleShader>(
+  static const pipeline::FragmentProgram program = pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::DownsampleShader>(
       "downsample", [](pipeline::FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_downsample)(b, u); });
   return program;
 }
 
 const pipeline::FragmentProgram& scale_program() {
-  static const pipeline::FragmentProgram program = pipeline::describe_fragment_shader<ScaleShader>(
+  static const pipeline::FragmentProgram program = pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::ScaleShader>(
       "scale", [](pipeline::FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_scale)(b, u); });
   return program;
 }

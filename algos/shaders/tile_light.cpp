@@ -2,18 +2,18 @@
 #include <cmath>
 
 #include "algos/shaders/deferred.h"
-#include "algos/shaders/gbuffer.h"
-#include "pipeline/shade/count_fragment.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "algos/shaders/tile_light.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include "algos/shaders/gbuffer-inl.h"
+#include "pipeline/shade/count_fragment-inl.h"
 #include "pipeline/shade/compute_lanes-inl.h"
 
-#ifndef HWSIM_ALGOS_TILE_LIGHT_SHADERS_
-#define HWSIM_ALGOS_TILE_LIGHT_SHADERS_
-namespace hwsim::algos {
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::algos::HWY_NAMESPACE {
+namespace lanes = pipeline::HWY_NAMESPACE;
 
 inline constexpr int kTilePx = 16;
 
@@ -29,14 +29,14 @@ enum TileBlock : int {
 template <class S, class Bounds>
 void gather_bounds(S& s, const DeferredUniforms& u, Bounds& bounds) {
   using I = typename S::I;
-  s.loop(kBoundsBlock, u.samples, s.valid(), [&](int i) {
+  s.loop(kBoundsBlock, u.samples, s.valid(), [&](int i) HWY_ATTR {
     const auto z = s.load_image(kDepthSlot, s.pixel_x(), s.pixel_y(), I(i)).x;
     bounds.add(view_z(s, u, s.pixel_x(), s.pixel_y(), I(i)), s.valid() & (z < typename S::F(1.0f)));
   });
 }
 
 template <class S>
-pipeline::Vec4<typename S::F> light_at(S& s, const DeferredUniforms& u, std::span<const pipeline::PointLight> points,
+lanes::Vec4<typename S::F> light_at(S& s, const DeferredUniforms& u, std::span<const pipeline::PointLight> points,
                                        typename S::I sample, typename S::F ox, typename S::F oy) {
   const auto g = read_gbuffer(s, u, s.pixel_x(), s.pixel_y(), sample, ox, oy);
   return light_sample(s, u, points, g, s.valid());
@@ -48,27 +48,27 @@ struct CountBounds {
 
 /// One pass through every block, for the operation counts.
 inline pipeline::ComputeProgram describe_tile_light(void (*run)(pipeline::GroupBatch&, const void*)) {
-  pipeline::CountFragment s;
+  lanes::CountFragment s;
   const DeferredUniforms u;
   const std::span points(u.lighting.points.data(), 1);
   CountBounds bounds;
   gather_bounds(s, u, bounds);
   using F = pipeline::CountF;
   using I = pipeline::CountI;
-  s.branch(kCullBlock, s.valid(), [&] {  // the light's sphere against the tile's box, and a slot in the list
-    const auto p = pipeline::broadcast<F>(u.lighting.points[0].position);
+  s.branch(kCullBlock, s.valid(), [&]() HWY_ATTR {  // the light's sphere against the tile's box, and a slot in the list
+    const auto p = lanes::broadcast<F>(u.lighting.points[0].position);
     const auto v = s.load_image(kDepthSlot, s.pixel_x(), s.pixel_y(), I(0));
-    const pipeline::Vec3<F> d = {max(v.x - p.x, p.x - v.y), max(v.y - p.y, p.y - v.z), max(v.z - p.z, p.z - v.w)};
+    const lanes::Vec3<F> d = {max(v.x - p.x, p.x - v.y), max(v.y - p.y, p.y - v.z), max(v.z - p.z, p.z - v.w)};
     (void)(dot(d, d) < v.x);
   });
-  s.branch(kFirstSampleBlock, s.valid(), [&] {
+  s.branch(kFirstSampleBlock, s.valid(), [&]() HWY_ATTR {
     s.store_image(0, s.pixel_x(), s.pixel_y(), I(0), light_at(s, u, points, I(0), F(0.0f), F(0.0f)), s.valid());
   });
   (void)is_complex(s, u, kTileClassifyBlock, s.pixel_x(), s.pixel_y());
-  s.branch(kOtherSampleBlock, s.valid(), [&] {
+  s.branch(kOtherSampleBlock, s.valid(), [&]() HWY_ATTR {
     s.store_image(0, s.pixel_x(), s.pixel_y(), I(0), light_at(s, u, points, I(0), F(0.0f), F(0.0f)), s.valid());
   });
-  s.branch(kReplicateBlock, s.valid(), [&] { s.store_image(0, I(0), I(0), I(0), {}, s.valid()); });
+  s.branch(kReplicateBlock, s.valid(), [&]() HWY_ATTR { s.store_image(0, I(0), I(0), I(0), {}, s.valid()); });
   pipeline::ComputeProgram program;
   program.name = "tile_light";
   program.run = run;
@@ -83,12 +83,6 @@ inline pipeline::ComputeProgram describe_tile_light(void (*run)(pipeline::GroupB
   return program;
 }
 
-}  // namespace hwsim::algos
-#endif
-
-HWY_BEFORE_NAMESPACE();
-namespace hwsim::algos::HWY_NAMESPACE {
-namespace lanes = pipeline::HWY_NAMESPACE;
 using lanes::ComputeLanes;
 using lanes::LaneF;
 using lanes::LaneI;
@@ -96,7 +90,8 @@ using lanes::LaneM;
 using lanes::kVectorLanes;
 
 struct LaneBounds {
-  LaneF nearest{-1e30f}, farthest{1e30f};  // view z is negative
+  LaneF nearest, farthest;  // view z is negative
+  LaneBounds() : nearest(-1e30f), farthest(1e30f) {}  // an implicit constructor would not get the vector target
   void add(LaneF z, LaneM mask) {
     nearest = select(mask, max(nearest, z), nearest);
     farthest = select(mask, min(farthest, z), farthest);
@@ -138,7 +133,7 @@ class TileLighter {
 
   void find_bounds() {
     LaneBounds bounds;
-    for_each_pixel([&](ComputeLanes& s) { gather_bounds(s, u_, bounds); });
+    for_each_pixel([&](ComputeLanes& s) HWY_ATTR { gather_bounds(s, u_, bounds); });
     HWY_ALIGN float nearest[kVectorLanes], farthest[kVectorLanes];
     lanes::store(bounds.nearest, nearest);
     lanes::store(bounds.farthest, farthest);
@@ -194,15 +189,15 @@ class TileLighter {
   static LaneF offset(int sixteenths) { return LaneF(static_cast<float>(sixteenths) * 0.0625f); }
 
   void light_first_samples() {
-    for_each_pixel([&](ComputeLanes& s) {
-      pipeline::Vec4<LaneF> color = {LaneF(0.0f), LaneF(0.0f), LaneF(0.0f), LaneF(0.0f)};
-      s.branch(kFirstSampleBlock, s.valid(), [&] {
+    for_each_pixel([&](ComputeLanes& s) HWY_ATTR {
+      lanes::Vec4<LaneF> color = {LaneF(0.0f), LaneF(0.0f), LaneF(0.0f), LaneF(0.0f)};
+      s.branch(kFirstSampleBlock, s.valid(), [&]() HWY_ATTR {
         color = light_at(s, u_, points_, LaneI(0), offset(u_.positions[0].x), offset(u_.positions[0].y));
         s.store_image(0, s.pixel_x(), s.pixel_y(), LaneI(0), color, s.valid());
       });
       if (u_.samples == 1) return;
       const LaneM complex = is_complex(s, u_, kTileClassifyBlock, s.pixel_x(), s.pixel_y()) & s.valid();
-      s.loop(kReplicateBlock, u_.samples - 1, !complex, [&](int i) {
+      s.loop(kReplicateBlock, u_.samples - 1, !complex, [&](int i) HWY_ATTR {
         s.store_image(0, s.pixel_x(), s.pixel_y(), LaneI(i + 1), color, !complex);
       });
       remember(s, complex);
@@ -243,7 +238,7 @@ class TileLighter {
     }
     const LaneI samples = lanes::load(sample);
     ComputeLanes s(g_, first_lane, lanes::load(x), lanes::load(y), samples, lanes::load(valid) == LaneI(1));
-    s.branch(kOtherSampleBlock, s.valid(), [&] {
+    s.branch(kOtherSampleBlock, s.valid(), [&]() HWY_ATTR {
       s.store_image(0, s.pixel_x(), s.pixel_y(), samples, light_at(s, u_, points_, samples, lanes::load(ox), lanes::load(oy)),
                     s.valid());
     });
@@ -273,7 +268,7 @@ namespace hwsim::algos {
 HWY_EXPORT(run_tile_light);
 
 const pipeline::ComputeProgram& tile_light_program() {
-  static const pipeline::ComputeProgram program = describe_tile_light(
+  static const pipeline::ComputeProgram program = HWY_NAMESPACE::describe_tile_light(
       [](pipeline::GroupBatch& g, const void* u) { HWY_DYNAMIC_DISPATCH(run_tile_light)(g, u); });
   return program;
 }

@@ -4,7 +4,7 @@
 #include "pipeline/graph/pipeline_state.h"
 #include "pipeline/raster/coverage-inl.h"
 #include "pipeline/raster/triangle.h"
-#include "pipeline/shade/codec.h"
+#include "pipeline/shade/codec-inl.h"
 
 #if defined(HWSIM_DEPTH_DEPTH_TILE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_DEPTH_DEPTH_TILE_INL_H_
@@ -54,7 +54,7 @@ inline CoarseResult coarse_test(const RasterTriangle& t, int x, int y, float sca
                        std::fabs(t.z.ddy) * (std::fabs(top) + 8.0f)) * 0x1p-20f;
   const float low = corner + std::min(across, 0.0f) + std::min(down, 0.0f) - slack;
   const float high = corner + std::max(across, 0.0f) + std::max(down, 0.0f) + slack;
-  const auto clamp01 = [](float v) { return v > 0.0f ? (v < 1.0f ? v : 1.0f) : 0.0f; };
+  const auto clamp01 = [](float v) HWY_ATTR { return v > 0.0f ? (v < 1.0f ? v : 1.0f) : 0.0f; };
   const std::uint32_t nearest = depth_bits(clamp01(low), scale), farthest = depth_bits(clamp01(high), scale);
   switch (compare) {
     case Compare::less:

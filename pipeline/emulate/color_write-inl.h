@@ -3,7 +3,7 @@
 #include "pipeline/emulate/pass_context.h"
 #include <cstring>
 
-#include "pipeline/shade/codec.h"
+#include "pipeline/shade/codec-inl.h"
 #include "pipeline/shade/lanes-inl.h"
 
 #if defined(HWSIM_EMULATE_COLOR_WRITE_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -38,7 +38,7 @@ inline void encode_batch(Format format, const float (&color)[4][kBatchLanes], in
 
 HWY_INLINE Vec4<LaneF> blend_factor(BlendFactor factor, const Vec4<LaneF>& src, const Vec4<LaneF>& dst) {
   const LaneF zero(0.0f), one(1.0f);
-  const auto all = [](LaneF x) { return Vec4<LaneF>{x, x, x, x}; };
+  const auto all = [](LaneF x) HWY_ATTR { return Vec4<LaneF>{x, x, x, x}; };
   switch (factor) {
     case BlendFactor::zero: return all(zero);
     case BlendFactor::one: return all(one);

@@ -3,11 +3,12 @@
 #include <algorithm>
 
 #include "pipeline/base/parallel.h"
-#include "pipeline/shade/codec.h"
-#include "pipeline/shade/scalar_lane.h"
+#include "pipeline/shade/codec-inl.h"
+#include "pipeline/shade/scalar_lane-inl.h"
 #include "pipeline/shade/texture_view.h"
 
 namespace hwsim::pipeline {
+using namespace HWY_NAMESPACE;  // the scalar lane of the static target
 
 GpuImage::GpuImage(Format f, int w, int h, int s) : format(f), width(w), height(h), samples(s) {
   const FormatInfo& format_info = info(f);

@@ -5,15 +5,15 @@
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/depth/depth_format.h"
-#include "pipeline/shade/codec.h"
-#include "pipeline/shade/scalar_lane.h"
 #include "pipeline/shade/texture_view.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pipeline/emulate/transfer.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include "pipeline/shade/codec-inl.h"
 #include "pipeline/shade/lanes-inl.h"
+#include "pipeline/shade/scalar_lane-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
@@ -86,8 +86,10 @@ void clear_image(GpuImage& image, const Pass& pass) {
     return;
   }
   const glm::vec4& c = pass.clear_color;
+  using HWY_NAMESPACE::ScalarF;
+  using HWY_NAMESPACE::ScalarI;
   ScalarI encoded[4] = {0, 0, 0, 0};
-  encode_texel<ScalarF, ScalarI>(image.format, {c.x, c.y, c.z, c.w}, encoded);
+  HWY_NAMESPACE::encode_texel<ScalarF, ScalarI>(image.format, {c.x, c.y, c.z, c.w}, encoded);
   for (std::size_t w = 0; w < 4; ++w) image.clear_words[w] = static_cast<std::uint32_t>(encoded[w].v);
 }
 

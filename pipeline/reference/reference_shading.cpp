@@ -8,12 +8,13 @@
 
 #include "pipeline/emulate/material_views.h"
 #include "pipeline/reference/reference.h"
-#include "pipeline/shade/scalar_lane.h"
-#include "pipeline/shade/surface.h"
-#include "pipeline/shade/texture_sampler.h"
+#include "pipeline/shade/scalar_lane-inl.h"
+#include "pipeline/shade/surface-inl.h"
+#include "pipeline/shade/texture_sampler-inl.h"
 
 namespace hwsim::pipeline {
 namespace {
+using namespace HWY_NAMESPACE;  // the scalar lane of the static target
 
 using ScalarSampler = TextureSampler<ScalarF, ScalarI, ScalarM>;
 

@@ -2,9 +2,9 @@
 //   template <class S> static void run(S& s, const Uniforms& uniforms)
 // written once against this class and CountFragment (shade/count_fragment.h). Per-target include guard.
 #include "pipeline/emulate/fragment_batch.h"
-#include "pipeline/shade/codec.h"
+#include "pipeline/shade/codec-inl.h"
 #include "pipeline/shade/lanes-inl.h"
-#include "pipeline/shade/texture_sampler.h"
+#include "pipeline/shade/texture_sampler-inl.h"
 
 #if defined(HWSIM_SHADE_FRAGMENT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_SHADE_FRAGMENT_LANES_INL_H_

@@ -2,8 +2,8 @@
 // foreach_target.h: per-target include guard, names in HWY_NAMESPACE.
 #include <hwy/highway.h>
 
-#include "pipeline/shade/transcendental.h"
-#include "pipeline/shade/vec.h"
+#include "pipeline/shade/transcendental-inl.h"
+#include "pipeline/shade/vec-inl.h"
 
 #if defined(HWSIM_SHADE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_SHADE_LANES_INL_H_

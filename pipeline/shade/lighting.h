@@ -1,14 +1,10 @@
 #pragma once
-// Shading models (techniques 0.5) and direct lighting, for every lane type: the emulator's registers, the counting type,
-// and the scalar of the ray-traced reference.
+// The lights of a frame. How surfaces reflect them: shade/lighting-inl.h.
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
 #include "pipeline/scene/scene.h"
-#include "pipeline/shade/codec.h"
-#include "pipeline/shade/transcendental.h"
-#include "pipeline/shade/vec.h"
 
 namespace hwsim::pipeline {
 
@@ -42,137 +38,5 @@ struct LightingUniforms {
 };
 
 LightingUniforms make_lighting(const Scene& scene, const Camera& camera);
-
-/// What lighting needs to know of a point on a surface.
-template <class F>
-struct Surface {
-  Vec3<F> position, normal, to_eye;
-  Vec3<F> albedo;      ///< diffuse reflectance
-  Vec3<F> specular;    ///< k_s, reflectance at normal incidence
-  F exponent;          ///< Blinn-Phong
-  F alpha;             ///< GGX, roughness squared
-  Vec3<F> emissive;
-};
-
-template <class F>
-Vec3<F> broadcast(const glm::vec3& v) { return {F(v.x), F(v.y), F(v.z)}; }
-
-/// base color and metallic-roughness to the models' parameters; alpha is kept above 0.03 (exponent below 2200).
-template <class F>
-void set_material(Vec3<F> base, F metallic, F roughness, Surface<F>& surface) {
-  const F alpha = max(roughness * roughness, F(0.03f));
-  surface.alpha = alpha;
-  surface.exponent = max(F(2.0f) / (alpha * alpha) - F(2.0f), F(0.0f));
-  surface.albedo = base * (F(1.0f) - metallic);
-  const F dielectric = F(0.04f) * (F(1.0f) - metallic);
-  surface.specular = base * metallic + Vec3<F>{dielectric, dielectric, dielectric};
-}
-
-/// E * (rho + k_s (s+8)/(8 pi) (n.h)^s) * (n.l), both gated by the light being above the surface.
-template <class F>
-Vec3<F> blinn_phong(const Surface<F>& s, const Vec3<F>& l, F n_dot_l) {
-  const Vec3<F> h = normalize(l + s.to_eye);
-  const F n_dot_h = max(dot(s.normal, h), F(0.0f));
-  const F lobe = (s.exponent + F(8.0f)) * F(0.0397887358f) * pow(n_dot_h, s.exponent);
-  return s.albedo * n_dot_l + s.specular * select(n_dot_l > F(0.0f), lobe, F(0.0f));
-}
-
-/// Smith separable G2, Schlick F; no 1/pi on the diffuse part (the lights' scale, techniques 0.5), so pi on the other.
-template <class F>
-Vec3<F> ggx(const Surface<F>& s, const Vec3<F>& l, F n_dot_l) {
-  const Vec3<F> h = normalize(l + s.to_eye);
-  const F n_dot_v = max(dot(s.normal, s.to_eye), F(1e-4f));
-  const F n_dot_h = max(dot(s.normal, h), F(0.0f)), v_dot_h = max(dot(s.to_eye, h), F(0.0f));
-  const F a2 = s.alpha * s.alpha;
-  const F d = n_dot_h * n_dot_h * (a2 - F(1.0f)) + F(1.0f);
-  const F ndf = a2 / max(d * d, F(1e-12f));  // times 1/pi, cancelled
-  const auto g1 = [&](F c) { return F(2.0f) * c / (c + sqrt(a2 + (F(1.0f) - a2) * c * c)); };
-  const F n_dot_l_safe = max(n_dot_l, F(1e-4f));
-  const F visibility = g1(n_dot_v) * g1(n_dot_l_safe) / (F(4.0f) * n_dot_v * n_dot_l_safe);
-  const F m = F(1.0f) - v_dot_h;
-  const F m2 = m * m;
-  const F schlick = m2 * m2 * m;
-  const Vec3<F> one = {F(1.0f), F(1.0f), F(1.0f)};
-  const Vec3<F> fresnel = s.specular + (one - s.specular) * schlick;
-  return (s.albedo + fresnel * (ndf * visibility)) * n_dot_l;
-}
-
-template <class F>
-Vec3<F> reflect_light(const Surface<F>& s, const Vec3<F>& l, ShadingModel model) {
-  const F n_dot_l = max(dot(s.normal, l), F(0.0f));
-  return model == ShadingModel::ggx ? ggx(s, l, n_dot_l) : blinn_phong(s, l, n_dot_l);
-}
-
-/// 1/d^2 windowed to zero at the range (Karis 2013), times the spot cone; `l` receives the unit direction to the light.
-template <class F>
-F point_attenuation(const PointLight& light, const Vec3<F>& position, Vec3<F>& l) {
-  const Vec3<F> d = broadcast<F>(light.position) - position;
-  const F d2 = max(dot(d, d), F(1e-4f));
-  const F inv_d = rsqrt(d2);
-  l = d * inv_d;
-  const F q = d2 * F(light.inv_range2);
-  const F window = max(F(1.0f) - q * q, F(0.0f));
-  F attenuation = window * window * inv_d * inv_d;
-  if (light.cos_outer > -1.5f) {
-    const F c = F(0.0f) - dot(l, broadcast<F>(light.axis));
-    const F cone = saturate((c - F(light.cos_outer)) * F(light.inv_cos_span));
-    attenuation = attenuation * cone * cone;
-  }
-  return attenuation;
-}
-
-/// Block numbers of lighting within a shader's blocks (shade/program.h); materials use 1 to 5.
-enum LightingBlock : int { kShadowBlock = 6, kDirectionalBlock = 7, kPointBlock = 8, kPointInRangeBlock = 9 };
-
-/// Share of the light that reaches a point: 2x2 taps, each compared, bilinear between texels.
-template <class S, class F>
-F shadow_visibility(S& s, const LightingUniforms& u, const Vec3<F>& position, const Vec3<F>& normal) {
-  using I = typename S::I;
-  const Vec3<F> p = position + normal * F(u.shadow_offset_m);
-  const glm::mat4& m = u.shadow_from_world;
-  const auto row = [&](int r) { return F(m[0][r]) * p.x + F(m[1][r]) * p.y + F(m[2][r]) * p.z + F(m[3][r]); };
-  const F x = row(0) - F(0.5f), y = row(1) - F(0.5f);
-  const F depth = row(2) - F(u.shadow_bias);
-  const F left = floor(x), top = floor(y);
-  const F fx = x - left, fy = y - top;
-  // Far outside the map the conversion would overflow.
-  const I xi = to_int(min(max(left, F(-1.0e6f)), F(1.0e6f))), yi = to_int(min(max(top, F(-1.0e6f)), F(1.0e6f)));
-  const auto tap = [&](int dx, int dy) {
-    const F stored = s.load_image(u.shadow_slot, xi + I(dx), yi + I(dy), I(0)).x;
-    return select(depth <= stored, F(1.0f), F(0.0f));
-  };
-  const F upper = tap(0, 0) * (F(1.0f) - fx) + tap(1, 0) * fx;
-  const F lower = tap(0, 1) * (F(1.0f) - fx) + tap(1, 1) * fx;
-  return upper + (lower - upper) * fy;
-}
-
-/// Ambient, emissive, directional lights and the given point lights. `mask`: lanes that are lit at all.
-template <class S, class F, class M>
-Vec3<F> light_surface(S& s, const LightingUniforms& u, std::span<const PointLight> points, const Surface<F>& surface,
-                      M mask) {
-  Vec3<F> sum = surface.emissive + surface.albedo * broadcast<F>(u.ambient);
-  s.loop(kDirectionalBlock, u.directional_count, mask, [&](int i) {
-    const DirectionalLight& light = u.directional[static_cast<std::size_t>(i)];
-    F visible(1.0f);
-    s.uniform_branch(kShadowBlock, light.shadowed && u.shadow_slot >= 0,
-                     [&] { visible = shadow_visibility(s, u, surface.position, surface.normal); });
-    sum = sum + reflect_light(surface, broadcast<F>(light.to_light), u.model) * (broadcast<F>(light.color) * visible);
-  });
-  s.loop(kPointBlock, static_cast<int>(points.size()), mask, [&](int i) {
-    const PointLight& light = points[static_cast<std::size_t>(i)];
-    Vec3<F> l;
-    const F attenuation = point_attenuation(light, surface.position, l);
-    s.branch(kPointInRangeBlock, mask & (attenuation > F(0.0f)), [&] {
-      sum = sum + reflect_light(surface, l, u.model) * (broadcast<F>(light.color) * attenuation);
-    });
-  });
-  return sum;
-}
-
-template <class S, class F, class M>
-Vec3<F> light_surface(S& s, const LightingUniforms& u, const Surface<F>& surface, M mask) {
-  // Without lights the vector still holds one, for the counting context.
-  return light_surface(s, u, std::span(u.points.data(), s.loop_count(u.point_count)), surface, mask);
-}
 
 }  // namespace hwsim::pipeline

@@ -2,17 +2,16 @@
 
 #include "pipeline/emulate/fragment_batch.h"
 #include "pipeline/shade/count_lane.h"
-#include "pipeline/shade/vec.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pipeline/shade/mesh_vertex.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include "pipeline/shade/vec-inl.h"
 #include "pipeline/shade/lanes-inl.h"
 
-#ifndef HWSIM_MESH_VERTEX_SHADER_
-#define HWSIM_MESH_VERTEX_SHADER_
-namespace hwsim::pipeline {
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::pipeline::HWY_NAMESPACE {
 
 enum class MeshOutput { position, uv, surface, full };
 
@@ -76,11 +75,6 @@ class CountVertex : public VertexAttributes {
   int varyings_ = 0;
 };
 
-}  // namespace hwsim::pipeline
-#endif
-
-HWY_BEFORE_NAMESPACE();
-namespace hwsim::pipeline::HWY_NAMESPACE {
 
 class VertexLanes : public VertexAttributes {
  public:
@@ -138,10 +132,12 @@ HWY_EXPORT(run_surface);
 HWY_EXPORT(run_full);
 
 namespace {
+using HWY_NAMESPACE::MeshOutput;
+
 template <MeshOutput kOutput>
 VertexProgram describe(std::string name, void (*run)(VertexBatch&, const void*)) {
-  CountVertex counter;
-  MeshVertexShader<kOutput>::run(counter, MeshVertexUniforms{});
+  HWY_NAMESPACE::CountVertex counter;
+  HWY_NAMESPACE::MeshVertexShader<kOutput>::run(counter, MeshVertexUniforms{});
   return {std::move(name), run, counter.ops(), counter.varyings(),
           [](const void* u) { return &static_cast<const MeshVertexUniforms*>(u)->clip_from_world; }};
 }

@@ -2,7 +2,7 @@
 
 // Without foreach_target: one vector target is enough for a test.
 #include "pipeline/shade/fragment_lanes-inl.h"
-#include "pipeline/shade/surface.h"
+#include "pipeline/shade/surface-inl.h"
 
 namespace hwsim::oracle {
 namespace {
@@ -14,7 +14,7 @@ struct DiscardShader {
   struct Uniforms {};
   template <class S>
   static void run(S& s, const Uniforms&) {
-    s.discard(pipeline::sample_alpha(s, 0) < typename S::F(s.material().alpha_cutoff));
+    s.discard(lanes::sample_alpha(s, 0) < typename S::F(s.material().alpha_cutoff));
   }
 };
 

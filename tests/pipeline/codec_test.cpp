@@ -1,6 +1,6 @@
 // Formats against exact rational arithmetic (every value of these formats, and every product below, is exact in double
 // or in 128-bit integers), and the transcendental functions against the library's doubles.
-#include "pipeline/shade/codec.h"
+#include "pipeline/shade/codec-inl.h"
 
 #include <gtest/gtest.h>
 
@@ -9,11 +9,12 @@
 #include <random>
 
 #include "pipeline/image/image.h"
-#include "pipeline/shade/scalar_lane.h"
+#include "pipeline/shade/scalar_lane-inl.h"
 #include "pipeline/shade/texture_view.h"
 
 namespace hwsim::pipeline {
 namespace {
+using namespace HWY_NAMESPACE;  // the scalar lane of the static target
 
 struct Words {
   std::uint32_t w[4];

@@ -5,11 +5,12 @@
 #include <numbers>
 
 #include "pipeline/scene/mip_chain.h"
-#include "pipeline/shade/scalar_lane.h"
-#include "pipeline/shade/texture_sampler.h"
+#include "pipeline/shade/scalar_lane-inl.h"
+#include "pipeline/shade/texture_sampler-inl.h"
 
 namespace hwsim::pipeline {
 namespace {
+using namespace HWY_NAMESPACE;  // the scalar lane of the static target
 
 constexpr float kPi = std::numbers::pi_v<float>;
 

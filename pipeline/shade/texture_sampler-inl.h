@@ -1,13 +1,20 @@
-#pragma once
 // Texture filtering on any lane type: the emulator's registers and the scalar of the ray-traced reference.
+// Per-target include guard, see shade/lanes-inl.h.
+#include <hwy/highway.h>
 #include <bit>
 #include <cstdint>
-
 #include "pipeline/shade/texture_view.h"
-#include "pipeline/shade/transcendental.h"
-#include "pipeline/shade/vec.h"
+#include "pipeline/shade/transcendental-inl.h"
+#include "pipeline/shade/vec-inl.h"
+#if defined(HWSIM_PIPELINE_SHADE_TEXTURE_SAMPLER_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_PIPELINE_SHADE_TEXTURE_SAMPLER_INL_H_
+#undef HWSIM_PIPELINE_SHADE_TEXTURE_SAMPLER_INL_H_
+#else
+#define HWSIM_PIPELINE_SHADE_TEXTURE_SAMPLER_INL_H_
+#endif
 
-namespace hwsim::pipeline {
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::pipeline::HWY_NAMESPACE {
 
 /// Samples one texture for the lanes of `valid` (helpers included: they fetch too). A lane fetches what it needs itself,
 /// not what its neighbors in a register need: otherwise counts would depend on the register's width.
@@ -163,7 +170,7 @@ class TextureSampler {
 
   void track(I index, std::uint32_t lanes) const {
     if (tracker_ == nullptr) return;
-    for_each_lane(index, lanes, [&](int lane, std::int32_t texel) {
+    for_each_lane(index, lanes, [&](int lane, std::int32_t texel) HWY_ATTR {
       tracker_->use((first_lane_ + lane) / 4, texture_.first_line + static_cast<std::uint32_t>(texel) / kTexelsPerLine);
     });
   }
@@ -174,4 +181,7 @@ class TextureSampler {
   int first_lane_;
 };
 
-}  // namespace hwsim::pipeline
+}  // namespace hwsim::pipeline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

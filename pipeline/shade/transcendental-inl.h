@@ -1,7 +1,17 @@
-#pragma once
 // exp2 and log2 from exact operations (add, multiply, floor, shifts), so that every vector width and the scalar type
 // give the same bits. The library's functions differ between targets.
-namespace hwsim::pipeline {
+// Per-target include guard, see shade/lanes-inl.h.
+#include <hwy/highway.h>
+
+#if defined(HWSIM_PIPELINE_SHADE_TRANSCENDENTAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_PIPELINE_SHADE_TRANSCENDENTAL_INL_H_
+#undef HWSIM_PIPELINE_SHADE_TRANSCENDENTAL_INL_H_
+#else
+#define HWSIM_PIPELINE_SHADE_TRANSCENDENTAL_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::pipeline::HWY_NAMESPACE {
 
 /// 2^x. Relative error < 2.4e-7 for x in [-126, 127]; clamped outside: 2^-126 and 2^127. (Swept by a test.)
 template <class F, class I>
@@ -42,4 +52,7 @@ F log2_polynomial(F x) {
 template <class F>
 F pow(F x, F y) { return exp2(log2(x) * y); }
 
-}  // namespace hwsim::pipeline
+}  // namespace hwsim::pipeline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,11 +1,19 @@
-#pragma once
 // Formats encoded and decoded on any lane type, with the rounding of Direct3D 11: to nearest even for normalized and
 // float formats. Values beyond a float format's range are clamped to its largest finite value, NaN becomes 0, so that
 // neither reaches an image.
+// Per-target include guard, see shade/lanes-inl.h.
+#include <hwy/highway.h>
 #include "hwsim/format.h"
-#include "pipeline/shade/vec.h"
+#include "pipeline/shade/vec-inl.h"
+#if defined(HWSIM_PIPELINE_SHADE_CODEC_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_PIPELINE_SHADE_CODEC_INL_H_
+#undef HWSIM_PIPELINE_SHADE_CODEC_INL_H_
+#else
+#define HWSIM_PIPELINE_SHADE_CODEC_INL_H_
+#endif
 
-namespace hwsim::pipeline {
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::pipeline::HWY_NAMESPACE {
 
 template <class F>
 F saturate(F x) { return min(max(x, F(0.0f)), F(1.0f)); }
@@ -64,12 +72,12 @@ F srgb_encode(F linear) {
 /// Words of one texel, as stored in GpuImage. Integer formats take the value's integer part.
 template <class F, class I>
 void encode_texel(Format format, const Vec4<F>& c, I (&words)[4]) {
-  const auto u8 = [](F x) { return pack_unorm<F, I>(x, 255.0f); };
-  const auto u16 = [](F x) { return pack_unorm<F, I>(x, 65535.0f); };
-  const auto s16 = [](F x) { return pack_snorm<F, I>(x, 32767.0f, 0xffff); };
-  const auto s8 = [](F x) { return pack_snorm<F, I>(x, 127.0f, 0xff); };
-  const auto half = [](F x) { return pack_half<F, I>(x); };
-  const auto finite = [](F x) { return float_to_bits(min(max(x, F(-3.4028235e38f)), F(3.4028235e38f))); };
+  const auto u8 = [](F x) HWY_ATTR { return pack_unorm<F, I>(x, 255.0f); };
+  const auto u16 = [](F x) HWY_ATTR { return pack_unorm<F, I>(x, 65535.0f); };
+  const auto s16 = [](F x) HWY_ATTR { return pack_snorm<F, I>(x, 32767.0f, 0xffff); };
+  const auto s8 = [](F x) HWY_ATTR { return pack_snorm<F, I>(x, 127.0f, 0xff); };
+  const auto half = [](F x) HWY_ATTR { return pack_half<F, I>(x); };
+  const auto finite = [](F x) HWY_ATTR { return float_to_bits(min(max(x, F(-3.4028235e38f)), F(3.4028235e38f))); };
   switch (format) {
     case Format::r8_unorm: words[0] = u8(c.x); break;
     case Format::rg8_unorm: words[0] = u8(c.x) | shift_left<8>(u8(c.y)); break;
@@ -135,11 +143,11 @@ F unpack_snorm(I code, float max_code, int sign_bit) {
 /// The inverse; channels that a format lacks read 0, alpha 1. `srgb_table`: srgb_decode_table().
 template <class F, class I>
 Vec4<F> decode_texel(Format format, const I (&w)[4], const float* srgb_table) {
-  const auto u8 = [&](I x) { return to_float(x & I(255)) * F(1.0f / 255.0f); };
-  const auto u16 = [&](I x) { return to_float(x & I(65535)) * F(1.0f / 65535.0f); };
-  const auto s16 = [&](I x) { return unpack_snorm<F, I>(x & I(65535), 32767.0f, 32768); };
-  const auto s8 = [&](I x) { return unpack_snorm<F, I>(x & I(255), 127.0f, 128); };
-  const auto half = [&](I x) { return unpack_half<F, I>(x & I(65535)); };
+  const auto u8 = [&](I x) HWY_ATTR { return to_float(x & I(255)) * F(1.0f / 255.0f); };
+  const auto u16 = [&](I x) HWY_ATTR { return to_float(x & I(65535)) * F(1.0f / 65535.0f); };
+  const auto s16 = [&](I x) HWY_ATTR { return unpack_snorm<F, I>(x & I(65535), 32767.0f, 32768); };
+  const auto s8 = [&](I x) HWY_ATTR { return unpack_snorm<F, I>(x & I(255), 127.0f, 128); };
+  const auto half = [&](I x) HWY_ATTR { return unpack_half<F, I>(x & I(65535)); };
   const F zero(0.0f), one(1.0f);
   switch (format) {
     case Format::r8_unorm: return {u8(w[0]), zero, zero, one};
@@ -181,4 +189,7 @@ Vec4<F> decode_texel(Format format, const I (&w)[4], const float* srgb_table) {
   }
 }
 
-}  // namespace hwsim::pipeline
+}  // namespace hwsim::pipeline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,6 +1,16 @@
-#pragma once
 // Vectors over a lane type F (shade/lanes-inl.h, shade/scalar_lane.h, shade/count_lane.h).
-namespace hwsim::pipeline {
+// Per-target include guard, see shade/lanes-inl.h.
+#include <hwy/highway.h>
+
+#if defined(HWSIM_PIPELINE_SHADE_VEC_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_PIPELINE_SHADE_VEC_INL_H_
+#undef HWSIM_PIPELINE_SHADE_VEC_INL_H_
+#else
+#define HWSIM_PIPELINE_SHADE_VEC_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::pipeline::HWY_NAMESPACE {
 
 template <class F>
 struct Vec2 {
@@ -53,4 +63,7 @@ Vec4<F> operator-(const Vec4<F>& a, const Vec4<F>& b) { return {a.x - b.x, a.y -
 template <class F>
 Vec4<F> operator*(const Vec4<F>& a, F s) { return {a.x * s, a.y * s, a.z * s, a.w * s}; }
 
-}  // namespace hwsim::pipeline
+}  // namespace hwsim::pipeline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

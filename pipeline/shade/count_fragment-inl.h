@@ -1,17 +1,21 @@
-#pragma once
 // The counting context: a fragment shader run once on it yields the operations of each of its blocks.
 // Every branch is taken and every loop body runs once; how often lanes go through is counted during emulation.
+// Per-target include guard, see shade/lanes-inl.h.
+#include <hwy/highway.h>
 #include <algorithm>
 #include <string>
-
 #include "pipeline/shade/count_lane.h"
 #include "pipeline/emulate/fragment_batch.h"
-#include "pipeline/shade/vec.h"
+#include "pipeline/shade/vec-inl.h"
+#if defined(HWSIM_PIPELINE_SHADE_COUNT_FRAGMENT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_PIPELINE_SHADE_COUNT_FRAGMENT_INL_H_
+#undef HWSIM_PIPELINE_SHADE_COUNT_FRAGMENT_INL_H_
+#else
+#define HWSIM_PIPELINE_SHADE_COUNT_FRAGMENT_INL_H_
+#endif
 
-namespace hwsim::pipeline {
-
-
-
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::pipeline::HWY_NAMESPACE {
 
 class CountFragment {
  public:
@@ -55,7 +59,7 @@ class CountFragment {
   void uniform_branch(int block, bool, Body&& body) { enter(block, body); }
   template <class Body>
   void loop(int block, int, M, Body&& body) {
-    enter(block, [&] { body(0); });
+    enter(block, [&]() HWY_ATTR { body(0); });
     blocks_[static_cast<std::size_t>(block)].alu += 2;  // the counter and its comparison
   }
   std::size_t loop_count(int) const { return 1; }
@@ -102,4 +106,7 @@ FragmentProgram describe_fragment_shader(std::string name, void (*run)(FragmentB
   return program;
 }
 
-}  // namespace hwsim::pipeline
+}  // namespace hwsim::pipeline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,10 +1,18 @@
-#pragma once
 // From interpolated attributes and a material to a Surface: shared by forward shading and G-buffer passes.
+// Per-target include guard, see shade/lanes-inl.h.
+#include <hwy/highway.h>
 #include "pipeline/emulate/fragment_batch.h"
-#include "pipeline/shade/lighting.h"
+#include "pipeline/shade/lighting-inl.h"
 #include "pipeline/shade/mesh_vertex.h"
+#if defined(HWSIM_PIPELINE_SHADE_SURFACE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_PIPELINE_SHADE_SURFACE_INL_H_
+#undef HWSIM_PIPELINE_SHADE_SURFACE_INL_H_
+#else
+#define HWSIM_PIPELINE_SHADE_SURFACE_INL_H_
+#endif
 
-namespace hwsim::pipeline {
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::pipeline::HWY_NAMESPACE {
 
 enum MaterialBlock : int {
   kBaseTextureBlock = 1,
@@ -29,7 +37,7 @@ typename S::F sample_alpha(S& s, int uv) {
   const MaterialView& m = s.material();
   F alpha(m.base_color[3]);
   s.uniform_branch(kBaseTextureBlock, m.base_color_texture != nullptr,
-                   [&] { alpha = alpha * s.sample_texture(m.base_color_texture, uv).w; });
+                   [&]() HWY_ATTR { alpha = alpha * s.sample_texture(m.base_color_texture, uv).w; });
   return alpha;
 }
 
@@ -39,7 +47,7 @@ Vec3<typename S::F> shading_normal(S& s, bool full_varyings) {
   using V = SurfaceVaryings;
   const MaterialView& m = s.material();
   Vec3<F> n = normalize(s.attr3(V::kNormal));
-  s.uniform_branch(kNormalTextureBlock, m.normal_texture != nullptr && full_varyings, [&] {
+  s.uniform_branch(kNormalTextureBlock, m.normal_texture != nullptr && full_varyings, [&]() HWY_ATTR {
     const Vec4<F> texel = s.sample_texture(m.normal_texture, V::kUv0);
     const F scale(m.normal_scale);
     const Vec3<F> t = s.attr3(V::kTangent);
@@ -63,20 +71,20 @@ MaterialSample<typename S::F> sample_material(S& s, bool full_varyings) {
   out.metallic = F(m.metallic);
   out.roughness = F(m.roughness);
   out.emissive = {F(m.emissive[0]), F(m.emissive[1]), F(m.emissive[2])};
-  s.uniform_branch(kBaseTextureBlock, m.base_color_texture != nullptr, [&] {
+  s.uniform_branch(kBaseTextureBlock, m.base_color_texture != nullptr, [&]() HWY_ATTR {
     const Vec4<F> texel = s.sample_texture(m.base_color_texture, V::kUv0);
     out.base = {out.base.x * texel.x, out.base.y * texel.y, out.base.z * texel.z, out.base.w * texel.w};
   });
-  s.uniform_branch(kMetalRoughTextureBlock, m.metallic_roughness_texture != nullptr, [&] {
+  s.uniform_branch(kMetalRoughTextureBlock, m.metallic_roughness_texture != nullptr, [&]() HWY_ATTR {
     const Vec4<F> texel = s.sample_texture(m.metallic_roughness_texture, V::kUv0);
     out.roughness = out.roughness * texel.y;
     out.metallic = out.metallic * texel.z;
   });
-  s.uniform_branch(kEmissiveTextureBlock, m.emissive_texture != nullptr, [&] {
+  s.uniform_branch(kEmissiveTextureBlock, m.emissive_texture != nullptr, [&]() HWY_ATTR {
     const Vec4<F> texel = s.sample_texture(m.emissive_texture, V::kUv0);
     out.emissive = out.emissive * Vec3<F>{texel.x, texel.y, texel.z};
   });
-  s.uniform_branch(kVertexColorBlock, full_varyings && m.has_colors, [&] {
+  s.uniform_branch(kVertexColorBlock, full_varyings && m.has_colors, [&]() HWY_ATTR {
     out.base = {out.base.x * s.attr(V::kColor), out.base.y * s.attr(V::kColor + 1), out.base.z * s.attr(V::kColor + 2),
                 out.base.w * s.attr(V::kColor + 3)};
   });
@@ -95,4 +103,7 @@ Surface<F> make_surface(const MaterialSample<F>& m, const Vec3<F>& position, con
   return surface;
 }
 
-}  // namespace hwsim::pipeline
+}  // namespace hwsim::pipeline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

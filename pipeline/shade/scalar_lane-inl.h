@@ -1,12 +1,19 @@
-#pragma once
 // One lane: the same shader source evaluated a value at a time, for the ray-traced reference and for tests.
+// Per-target include guard, see shade/lanes-inl.h.
+#include <hwy/highway.h>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include "pipeline/shade/transcendental-inl.h"
+#if defined(HWSIM_PIPELINE_SHADE_SCALAR_LANE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_PIPELINE_SHADE_SCALAR_LANE_INL_H_
+#undef HWSIM_PIPELINE_SHADE_SCALAR_LANE_INL_H_
+#else
+#define HWSIM_PIPELINE_SHADE_SCALAR_LANE_INL_H_
+#endif
 
-#include "pipeline/shade/transcendental.h"
-
-namespace hwsim::pipeline {
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::pipeline::HWY_NAMESPACE {
 
 struct ScalarM {
   bool v;
@@ -78,4 +85,7 @@ void for_each_lane(ScalarI a, std::uint32_t bits, Body&& body) {
   if (bits != 0) body(0, a.v);
 }
 
-}  // namespace hwsim::pipeline
+}  // namespace hwsim::pipeline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
