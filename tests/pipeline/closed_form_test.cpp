@@ -329,5 +329,50 @@ TEST(ClosedForm, ResolvesToTheMeanOfTheSamples) {
   }
 }
 
+// Whether the triangle, grown by `margin`, and the pixel's square overlap: no axis separates them (1/256 px).
+bool touches(const std::int64_t (&p)[3][2], int x, int y, double margin) {
+  const double lo[2] = {x * 256.0 - margin, y * 256.0 - margin}, hi[2] = {x * 256.0 + 256 + margin, y * 256.0 + 256 + margin};
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto [low, high] = std::minmax({p[0][axis], p[1][axis], p[2][axis]});
+    if (static_cast<double>(high) < lo[axis] || static_cast<double>(low) > hi[axis]) return false;
+  }
+  const double area = static_cast<double>((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]));
+  for (int i = 0; i < 3; ++i) {
+    const auto &a = p[i], &b = p[(i + 1) % 3];
+    const double nx = static_cast<double>(a[1] - b[1]) * (area > 0 ? 1 : -1), ny = static_cast<double>(b[0] - a[0]) * (area > 0 ? 1 : -1);
+    const double px = nx > 0 ? hi[0] : lo[0], py = ny > 0 ? hi[1] : lo[1];  // the corner furthest inside
+    if (nx * (px - static_cast<double>(a[0])) + ny * (py - static_cast<double>(a[1])) < 0) return false;
+  }
+  return true;
+}
+
+TEST(ClosedForm, ConservativeRasterCoversWhatTheTriangleTouches) {
+  constexpr int kSize = 64;
+  std::mt19937 random(9);
+  std::uint64_t covered = 0;
+  for (int i = 0; i < 300; ++i) {
+    std::int64_t fixed[3][2];
+    std::vector<glm::vec3> positions;
+    for (auto& v : fixed) {
+      for (std::int64_t& c : v) c = static_cast<std::int64_t>(random() % (kSize * 256 + 1));
+      positions.emplace_back(static_cast<float>(v[0]) / (kSize * 128) - 1, 1 - static_cast<float>(v[1]) / (kSize * 128), 0.5f);
+    }
+    SampleFrame frame(test::share(test::clip_space_scene(positions, {0, 1, 2})), kSize, kSize, 1);
+    DrawBatch batch = frame.all_draws(mesh_position_program(), &test::constant_program());
+    batch.state.raster.conservative = true;
+    batch.state.raster.sample_positions = {{static_cast<std::int8_t>(i % 16 - 8), static_cast<std::int8_t>(7 - i / 16 % 16)}};
+    frame.draw("touch", {batch});
+    const Image image = frame.run().color;
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        const bool found = image.at(x, y).x != 0.0f;
+        covered += found ? 1 : 0;
+        ASSERT_TRUE(found || !touches(fixed, x, y, -0.001)) << i << ": " << x << " " << y;
+        ASSERT_TRUE(!found || touches(fixed, x, y, 1.001)) << i << ": " << x << " " << y;
+      }
+  }
+  EXPECT_GT(covered, 50000u);
+}
+
 }  // namespace
 }  // namespace hwsim::pipeline
