@@ -40,10 +40,10 @@ HWY_BEFORE_NAMESPACE();
 namespace hwsim::oracle::HWY_NAMESPACE {
 namespace product = pipeline::HWY_NAMESPACE;
 
-void add_tile(const std::uint64_t* masks, std::size_t samples, int x, int y, CoverageWindow& window) {
+void add_tile(const product::SampleMasks& masks, std::size_t samples, int x, int y, CoverageWindow& window) {
   for (int lane = 0; lane < pipeline::kBlockLanes; ++lane)
     for (std::size_t s = 0; s < samples; ++s)
-      if ((masks[s] >> lane & 1) != 0)
+      if ((masks.lanes[s] >> lane & 1) != 0)
         window.bits[static_cast<std::size_t>((y + pipeline::lane_y(lane)) * CoverageWindow::kSizePx + x +
                                              pipeline::lane_x(lane))] |= 1u << s;
 }
@@ -55,11 +55,11 @@ void rasterize(const pipeline::RasterTriangle& t, std::span<const pipeline::Samp
   const int left = std::max<int>(t.min_x, window.x) & ~7, top = std::max<int>(t.min_y, window.y) & ~7;
   const int right = std::min<int>(t.max_x, window.x + CoverageWindow::kSizePx - 1);
   const int bottom = std::min<int>(t.max_y, window.y + CoverageWindow::kSizePx - 1);
-  std::uint64_t masks[pipeline::kMaxSamples];
+  product::SampleMasks masks;
   for (int y = top; y <= bottom; y += 8) {
     for (int x = left; x <= right; x += 8) {
       if (!coverage.reaches(x, y)) continue;
-      std::fill(std::begin(masks), std::end(masks), ~std::uint64_t{0});
+      std::fill(std::begin(masks.lanes), std::end(masks.lanes), ~std::uint64_t{0});
       if (!coverage.covers_whole_tile()) coverage.masks(masks);
       add_tile(masks, positions.size(), x - window.x, y - window.y, window);
     }
