@@ -28,13 +28,19 @@ class BinDepth {
     n.hiz.tested_tiles += 1;
     CoarseResult result = coarse_test(t, x, y, c_.depth_scale, w_.state->depth.compare, c_.depth->depth_min[block],
                                       c_.depth->depth_max[block]);
-    // A sample that fails may still change the stencil.
-    if (result == CoarseResult::killed && w_.state->stencil.test && w_.state->stencil.on_depth_fail != StencilOp::keep)
-      result = CoarseResult::ambiguous;
+    if (result == CoarseResult::killed && failing_samples_matter()) result = CoarseResult::ambiguous;
     n.hiz.killed_tiles += result == CoarseResult::killed ? 1 : 0;
     n.hiz.accepted_tiles += result == CoarseResult::accepted ? 1 : 0;
     n.hiz.ambiguous_tiles += result == CoarseResult::ambiguous ? 1 : 0;
     return result;
+  }
+
+  /// Samples that fail may still change the stencil, by either test; and a shader that writes storage runs before the
+  /// test unless early tests are forced.
+  bool failing_samples_matter() const {
+    const StencilState& stencil = w_.state->stencil;
+    const bool changes_stencil = stencil.test && (stencil.on_depth_fail != StencilOp::keep || stencil.on_fail != StencilOp::keep);
+    return changes_stencil || (w_.late_z && w_.program->writes_storage);
   }
 
   void count_depth_traffic(std::uint64_t tested, std::uint64_t passed, PassCounters& n) const {

@@ -80,7 +80,9 @@ class BinRunner : private BinShading {
     w_.current_chunk = t.chunk;
     PassCounters& n = w_.counters();
     const bool conservative = w_.state->raster.conservative;
-    TileCoverage coverage(t, conservative ? std::span(&kPixelCenter, 1) : c_.positions, c_.sample_min_x, c_.sample_min_y, c_.sample_max_x, c_.sample_max_y);
+    TileCoverage coverage = conservative ? TileCoverage(t, std::span(&kPixelCenter, 1), 0, 0, 0, 0)
+                                         : TileCoverage(t, c_.positions, c_.sample_min_x, c_.sample_min_y,
+                                                        c_.sample_max_x, c_.sample_max_y);
     const int left = std::max<int>(t.min_x, bin_x_) & ~7, right = std::min<int>(t.max_x, bin_x_ + kBinPx - 1);
     const int top = std::max<int>(t.min_y, bin_y_) & ~7, bottom = std::min<int>(t.max_y, bin_y_ + kBinPx - 1);
     SampleMasks masks;
@@ -90,14 +92,14 @@ class BinRunner : private BinShading {
         n.raster.visited_tiles += 1;
         const CoarseResult coarse = test_coarse(t, x, y, n);
         if (coarse == CoarseResult::killed) continue;
-        if (!cover(coverage, x, y, masks, n)) continue;
+        if (!cover(t, coverage, x, y, masks, n)) continue;
         if (!w_.late_z && !test_early(t, x, y, coarse, masks, n)) continue;
         if (w_.program != nullptr) append_tile(&t, &segment, &item, x, y, masks, n);
       }
     }
   }
 
-  bool cover(TileCoverage& coverage, int x, int y, SampleMasks& masks, PassCounters& n) {
+  bool cover(const RasterTriangle& t, TileCoverage& coverage, int x, int y, SampleMasks& masks, PassCounters& n) {
     if (coverage.covers_whole_tile()) {
       masks.start();
       for (int s = 0; s < samples_; ++s) masks.set(static_cast<std::size_t>(s), ~std::uint64_t{0});
@@ -108,15 +110,22 @@ class BinRunner : private BinShading {
         for (int s = 0; s < samples_; ++s) masks.set(static_cast<std::size_t>(s), masks.lanes[0]);
       }
     }
+    // Grown edges meet far beyond a sharp corner: the bounds end it.
+    if (w_.state->raster.conservative)
+      masks.keep(lanes_within(t.min_x - x, t.min_y - y, t.max_x - x, t.max_y - y), 0, samples_, samples_);
     if (x + kBlockPx > c_.width || y + kBlockPx > c_.height) masks.keep(lanes_inside(x, y), 0, samples_, samples_);
     n.raster.covered_samples += masks.count;
     return masks.count != 0;
   }
 
-  std::uint64_t lanes_inside(int x, int y) const {
+  std::uint64_t lanes_inside(int x, int y) const { return lanes_within(0, 0, c_.width - 1 - x, c_.height - 1 - y); }
+
+  /// Lanes of a tile in a rectangle of its pixels, both ends included.
+  static std::uint64_t lanes_within(int left, int top, int right, int bottom) {
     std::uint64_t inside = 0;
     for (int lane = 0; lane < kBlockLanes; ++lane)
-      if (x + lane_x(lane) < c_.width && y + lane_y(lane) < c_.height) inside |= std::uint64_t{1} << lane;
+      if (lane_x(lane) >= left && lane_x(lane) <= right && lane_y(lane) >= top && lane_y(lane) <= bottom)
+        inside |= std::uint64_t{1} << lane;
     return inside;
   }
 

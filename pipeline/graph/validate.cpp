@@ -47,6 +47,7 @@ class Validator {
   }
 
   void check_pass(const Pass& pass) {
+    check_slots(pass);
     for (const ImageId id : pass.sampled) check_read(pass, id);
     if (pass.source) check_read(pass, pass.source);
     switch (pass.kind) {
@@ -59,6 +60,17 @@ class Validator {
       case PassKind::copy:
       case PassKind::resolve: check_transfer(pass); break;
     }
+  }
+
+  void check_slots(const Pass& pass) {
+    if (pass.sampled.size() > kMaxImageSlots || pass.storage.size() > kMaxBufferSlots)
+      fail("G007", "pass `" + pass.name + "` binds " + std::to_string(pass.sampled.size()) + " images and " +
+                       std::to_string(pass.storage.size()) + " buffers, at most " + std::to_string(kMaxImageSlots) +
+                       " and " + std::to_string(kMaxBufferSlots) + " are supported");
+    const int s = pass.samples;
+    if (s < 1 || s > kMaxSamples || (s & (s - 1)) != 0)
+      fail("G002", "pass `" + pass.name + "` rasterizes " + std::to_string(s) +
+                       " samples, must be 1, 2, 4, 8, 16 or 32");
   }
 
   void check_read(const Pass& pass, ImageId id) {
@@ -139,6 +151,10 @@ class Validator {
     if (!state.raster.sample_positions.empty() && !features_.programmable_sample_positions)
       fail("G006", "pass `" + pass.name + "` sets sample positions, which this GPU cannot",
            "gpu.features.programmable_sample_positions = true");
+    const std::size_t positions = state.raster.sample_positions.size();
+    if (positions != 0 && positions != static_cast<std::size_t>(pass.samples))
+      fail("G002", "pass `" + pass.name + "` sets " + std::to_string(positions) + " sample positions for " +
+                       std::to_string(pass.samples) + " samples");
     if (state.raster.conservative && !features_.conservative_raster)
       fail("G006", "pass `" + pass.name + "` rasterizes conservatively, which this GPU cannot",
            "gpu.features.conservative_raster = true");

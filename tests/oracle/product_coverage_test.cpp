@@ -40,10 +40,10 @@ HWY_BEFORE_NAMESPACE();
 namespace hwsim::oracle::HWY_NAMESPACE {
 namespace product = pipeline::HWY_NAMESPACE;
 
-void add_tile(const std::uint64_t* masks, std::size_t samples, int x, int y, CoverageWindow& window) {
+void add_tile(const product::SampleMasks& masks, std::size_t samples, int x, int y, CoverageWindow& window) {
   for (int lane = 0; lane < pipeline::kBlockLanes; ++lane)
     for (std::size_t s = 0; s < samples; ++s)
-      if ((masks[s] >> lane & 1) != 0)
+      if ((masks.lanes[s] >> lane & 1) != 0)
         window.bits[static_cast<std::size_t>((y + pipeline::lane_y(lane)) * CoverageWindow::kSizePx + x +
                                              pipeline::lane_x(lane))] |= 1u << s;
 }
