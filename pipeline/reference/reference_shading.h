@@ -1,5 +1,5 @@
 #pragma once
-// The ground truth shaded by the emulator's own templates (shade/surface.h, shade/lighting.h) on a scalar
+// The ground truth shaded by the emulator's own templates (shade/surface-inl.h, shade/lighting-inl.h) on a scalar
 // lane: what differs from an emulated frame is sampling, filtering of shadows and storage formats, never the
 // material.
 #include <functional>

@@ -1,6 +1,6 @@
 // What a fragment shader sees, on the host's vector registers. A shader is a struct with
 //   template <class S> static void run(S& s, const Uniforms& uniforms)
-// written once against this class and CountFragment (shade/count_fragment.h). Per-target include guard.
+// written once against this class and CountFragment (shade/count_fragment-inl.h). Per-target include guard.
 #include "pipeline/emulate/fragment_batch.h"
 #include "pipeline/shade/codec-inl.h"
 #include "pipeline/shade/lanes-inl.h"

@@ -1,4 +1,4 @@
-// Vectors over a lane type F (shade/lanes-inl.h, shade/scalar_lane.h, shade/count_lane.h).
+// Vectors over a lane type F (shade/lanes-inl.h, shade/scalar_lane-inl.h, shade/count_lane.h).
 // Per-target include guard, see shade/lanes-inl.h.
 #include <hwy/highway.h>
 

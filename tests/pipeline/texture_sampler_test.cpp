@@ -1,5 +1,5 @@
 // The texture unit against a sampler in double precision, written from the rules of OpenGL 4.6, section 8.14.
-#include "pipeline/shade/texture_sampler.h"
+#include "pipeline/shade/texture_sampler-inl.h"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,13 @@
 #include <random>
 
 #include "pipeline/image/image.h"
-#include "pipeline/shade/scalar_lane.h"
+#include "pipeline/shade/scalar_lane-inl.h"
 #include "support/frames.h"
 
 namespace hwsim::pipeline {
 namespace {
+using namespace HWY_NAMESPACE;  // the scalar lane of the static target
+
 using Product = TextureSampler<ScalarF, ScalarI, ScalarM>;
 using Color = std::array<double, 4>;
 
