@@ -61,7 +61,7 @@ void rasterize(const pipeline::RasterTriangle& t, std::span<const pipeline::Samp
       if (!coverage.reaches(x, y)) continue;
       std::fill(std::begin(masks.lanes), std::end(masks.lanes), ~std::uint64_t{0});
       if (!coverage.covers_whole_tile()) coverage.masks(masks);
-      add_tile(masks.lanes, positions.size(), x - window.x, y - window.y, window);
+      add_tile(masks, positions.size(), x - window.x, y - window.y, window);
     }
   }
 }
