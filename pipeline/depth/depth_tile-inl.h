@@ -19,9 +19,11 @@ namespace hwsim::pipeline::HWY_NAMESPACE {
 /// Depth of a triangle at (x, y) pixels from its reference pixel's corner, as stored. The only place where depth is
 /// evaluated, so that EQUAL passes meet the bits of the pre-pass.
 HWY_INLINE LaneI depth_at(const PlaneEquation& z, LaneF x, LaneF y, float scale) {
-  const LaneF value = saturate((LaneF(z.base) + LaneF(z.ddy) * y) + LaneF(z.ddx) * x);
+  const LaneF plane = (LaneF(z.base) + LaneF(z.ddy) * y) + LaneF(z.ddx) * x;
+  // Never NaN, so the plain instructions agree on all targets but for the sign of zero, which the sum below removes.
+  const LaneF value(hn::Min(hn::Max(plane.v, hn::Zero(DF())), hn::Set(DF(), 1.0f)));
   if (scale == 0.0f) return float_to_bits(value + LaneF(0.0f));
-  return LaneI(hn::NearestInt((value * LaneF(scale)).v));
+  return round_to_int(value * LaneF(scale));
 }
 
 HWY_INLINE LaneM compare_depth(Compare compare, LaneI a, LaneI b) {
@@ -97,6 +99,13 @@ void fine_test_of(const RasterTriangle& t, int x, int y, std::span<const SampleP
     for (int v = 0; v < kBlockVectors; ++v) {
       const int first = v * kVectorLanes;
       const LaneI old = load(stored + first);
+      if ((covered >> first & kRegisterBits) == 0) {
+        if constexpr (kWrite) {
+          lowest = min(lowest, old);
+          highest = max(highest, old);
+        }
+        continue;
+      }
       const LaneI z = depth_at(t.z, load(kLaneOffsets.fx + first) + sample_x, load(kLaneOffsets.fy + first) + sample_y,
                                tile.scale);
       const LaneM pass = mask_from_bits(covered, first) & compare_depth(kCompare, z, old);

@@ -25,7 +25,7 @@ class BinColor : protected BinDepth {
       image.use(block);
       EncodedBatch texels;
       const bool reads = state.enabled || state.write_mask != 0xf;
-      if (!reads) encode_batch(image.format, batch.color[target], image.words, kBatchLanes, texels);
+      if (!reads) encode_batch(image.format, batch.color[target], image.words, batch.valid_lanes, texels);
       std::uint64_t written = 0, any_lane = 0, every_sample = ~std::uint64_t{0};
       for (int s = first_sample; s < last_sample; ++s) {
         any_lane |= masks[s];
@@ -66,7 +66,7 @@ class BinColor : protected BinDepth {
       for (int q = 0; q < to.count; ++q) image.use(block[q]);
       EncodedBatch texels;
       const bool reads = state.enabled || state.write_mask != 0xf;
-      if (!reads) encode_batch(image.format, batch.color[target], image.words, 4 * batch.quad_count, texels);
+      if (!reads) encode_batch(image.format, batch.color[target], image.words, batch.valid_lanes, texels);
       for (int s = first_sample; s < last_sample; ++s) {
         if (reads) blend_batch(image, state, batch.color[target], to, s, texels);
         write_sample(image, to, batch.sample_index >= 0, s, texels);

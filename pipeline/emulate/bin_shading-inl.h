@@ -35,11 +35,11 @@ class BinShading : protected BinColor {
     n.raster.partial_quads += static_cast<std::uint64_t>(quads_of(quads & ~masks.any_lane));
     FragmentBatch& batch = w_.sample_batch;
     start_tile(batch, t, segment, item, x, y);
-    set_lane_coverage(batch, masks.lanes);
-    SampleMasks kept = masks;
+    const bool centroid = w_.state->raster.centroid;
+    if (centroid || w_.program->reads_coverage) set_lane_coverage(batch, masks.lanes);
     if (w_.state->raster.sample_rate && samples_ > 1) {
       for (int s = 0; s < samples_; ++s) {
-        kept = masks;
+        SampleMasks kept = masks;
         if (masks.lanes[s] != 0) shade_tile_sample(batch, block, x, y, s, kept);
       }
       return;
@@ -47,11 +47,12 @@ class BinShading : protected BinColor {
     batch.sample_index = -1;
     batch.active_lanes = masks.any_lane;
     batch.valid_lanes = quads;
-    set_up_tile(batch, x, y, w_.state->raster.centroid ? AttributeLocation::centroid : AttributeLocation::center,
-                c_.positions, 0);
+    set_up_tile(batch, x, y, centroid ? AttributeLocation::centroid : AttributeLocation::center, c_.positions, 0);
     shade(batch, false);
     add_tile_heat(batch, x, y);
-    if (batch.discarded_lanes != 0) kept.keep(~batch.discarded_lanes, 0, samples_, samples_);
+    if (batch.discarded_lanes == 0 && !w_.late_z) return write_tile(batch, block, masks.lanes, 0, samples_);
+    SampleMasks kept = masks;
+    kept.keep(~batch.discarded_lanes, 0, samples_, samples_);
     if (w_.late_z) test_tile_late(t, x, y, kept);
     write_tile(batch, block, kept.lanes, 0, samples_);
   }

@@ -31,9 +31,10 @@ HWY_INLINE void encode_lanes(Format format, const Vec4<LaneF>& color, int words,
   for (int w = 0; w < words; ++w) store(encoded[w], out.words[w] + first);
 }
 
-inline void encode_batch(Format format, const float (&color)[4][kBatchLanes], int words, int lanes, EncodedBatch& out) {
-  for (int first = 0; first < lanes; first += kVectorLanes)
-    encode_lanes(format, batch_color(color, first), words, first, out);
+inline void encode_batch(Format format, const float (&color)[4][kBatchLanes], int words, std::uint64_t lanes,
+                         EncodedBatch& out) {
+  for (int first = 0; first < kBatchLanes; first += kVectorLanes)
+    if ((lanes >> first & kRegisterBits) != 0) encode_lanes(format, batch_color(color, first), words, first, out);
 }
 
 HWY_INLINE Vec4<LaneF> blend_factor(BlendFactor factor, const Vec4<LaneF>& src, const Vec4<LaneF>& dst) {
@@ -89,7 +90,7 @@ inline void store_tile(GpuImage& image, int block, int sample, std::uint64_t mas
   for (int w = 0; w < image.words; ++w) {
     std::int32_t* to = base + w * kBlockLanes;
     for (int first = 0; first < kBlockLanes; first += kVectorLanes)
-      hn::BlendedStore(load(texels.words[w] + first).v, hn::RebindMask(DI(), mask_from_bits(mask, first).v), DI(),
+      if ((mask >> first & kRegisterBits) != 0) hn::BlendedStore(load(texels.words[w] + first).v, hn::RebindMask(DI(), mask_from_bits(mask, first).v), DI(),
                        to + first);
   }
 }

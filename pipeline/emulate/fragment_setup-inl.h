@@ -98,6 +98,7 @@ inline void set_up_tile(FragmentBatch& batch, int x, int y, AttributeLocation lo
                         std::span<const SamplePosition> positions, int sample) {
   const RasterTriangle* t = batch.triangle[0];
   for (int first = 0; first < kBlockLanes; first += kVectorLanes) {
+    if ((batch.valid_lanes >> first & kRegisterBits) == 0) continue;
     store(load(kLaneOffsets.x + first) + LaneI(x), batch.pixel_x.data() + first);
     store(load(kLaneOffsets.y + first) + LaneI(y), batch.pixel_y.data() + first);
     if (t == nullptr) continue;

@@ -33,7 +33,10 @@ class CountFragment {
   I pixel_x() { return integer(); }
   I pixel_y() { return integer(); }
   int sample_index() const { return -1; }
-  I coverage() { return integer(); }
+  I coverage() {
+    reads_coverage_ = true;
+    return integer();
+  }
   F facing() { return value(); }
   F attr(int) {
     current_->interp += 1;
@@ -70,6 +73,7 @@ class CountFragment {
   const BlockOps& blocks() const { return blocks_; }
   int block_count() const { return block_count_; }
   int color_outputs() const { return color_outputs_; }
+  bool reads_coverage() const { return reads_coverage_; }
 
  private:
   F value() { return F(&current_); }
@@ -89,6 +93,7 @@ class CountFragment {
   ShaderOps* current_;
   int block_count_ = 1;
   int color_outputs_ = 0;
+  bool reads_coverage_ = false;
 };
 
 /// Counts a shader and fills a program's costs.
@@ -103,6 +108,7 @@ FragmentProgram describe_fragment_shader(std::string name, void (*run)(FragmentB
   program.ops = counter.blocks();
   program.block_count = counter.block_count();
   program.color_outputs = counter.color_outputs();
+  program.reads_coverage = counter.reads_coverage();
   return program;
 }
 

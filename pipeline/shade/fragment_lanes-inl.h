@@ -187,9 +187,8 @@ class FragmentLanes {
 template <class Shader>
 void run_fragment_shader(FragmentBatch& batch, const void* uniforms) {
   const auto& typed = *static_cast<const typename Shader::Uniforms*>(uniforms);
-  constexpr std::uint64_t kRegister = kVectorLanes == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << kVectorLanes) - 1;
   for (int first = 0; first < kBatchLanes; first += kVectorLanes) {
-    if ((batch.valid_lanes >> first & kRegister) == 0) continue;
+    if ((batch.valid_lanes >> first & kRegisterBits) == 0) continue;
     FragmentLanes s(batch, first);
     Shader::run(s, typed);
   }

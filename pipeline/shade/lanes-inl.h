@@ -24,6 +24,9 @@ using VI = hn::Vec<DI>;
 using VM = hn::Mask<DF>;
 inline constexpr int kVectorLanes = static_cast<int>(HWY_MAX_BYTES / 4);  // 4, 8 or 16; a multiple of a quad
 
+/// The bits of one register's lanes.
+inline constexpr std::uint64_t kRegisterBits = (std::uint64_t{1} << kVectorLanes) - 1;
+
 struct LaneM {
   VM v;
 };
@@ -80,6 +83,14 @@ HWY_INLINE LaneM operator>(LaneI a, LaneI b) { return {hn::RebindMask(DF(), hn::
 HWY_INLINE LaneM operator==(LaneI a, LaneI b) { return {hn::RebindMask(DF(), hn::Eq(a.v, b.v))}; }
 HWY_INLINE LaneM operator!=(LaneI a, LaneI b) { return !(a == b); }
 HWY_INLINE LaneI to_int(LaneF a) { return LaneI(hn::ConvertTo(DI(), a.v)); }
+/// To the nearest integer, ties to even, for |a| < 2^31 (hn::NearestInt also mends overflow, at three more operations).
+HWY_INLINE LaneI round_to_int(LaneF a) {
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+  return LaneI(VI{_mm512_cvtps_epi32(a.v.raw)});
+#else
+  return LaneI(hn::NearestInt(a.v));
+#endif
+}
 HWY_INLINE LaneF to_float(LaneI a) { return LaneF(hn::ConvertTo(DF(), a.v)); }
 HWY_INLINE LaneF bits_to_float(LaneI a) { return LaneF(hn::BitCast(DF(), a.v)); }
 HWY_INLINE LaneI float_to_bits(LaneF a) { return LaneI(hn::BitCast(DI(), a.v)); }
