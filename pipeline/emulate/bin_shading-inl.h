@@ -12,7 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
 /// From this many quads of one triangle on, a tile is shaded in place; fewer are gathered with those of other tiles.
-inline constexpr int kTileQuads = 5;
+inline constexpr int kTileQuads = 3;
 
 /// Fragments of one bin: tiles shaded in place, and quads gathered into batches.
 class BinShading : protected BinColor {
@@ -161,10 +161,13 @@ class BinShading : protected BinColor {
     const int quads = batch.quad_count;
     std::uint64_t active = 0;
     for (int q = 0; q < quads; ++q) {
-      lane_coverage(w_.samples[static_cast<std::size_t>(q)], samples_, batch.coverage.data() + 4 * q);
-      for (int lane = 4 * q; lane < 4 * q + 4; ++lane)
-        active |= static_cast<std::uint64_t>(batch.coverage[static_cast<std::size_t>(lane)] != 0) << lane;
+      std::uint32_t lanes = 0;
+      for (int s = 0; s < samples_; ++s) lanes |= w_.samples[static_cast<std::size_t>(q)].masks[s];
+      active |= static_cast<std::uint64_t>(lanes) << (4 * q);
     }
+    if (w_.state->raster.centroid || w_.program->reads_coverage)
+      for (int q = 0; q < quads; ++q)
+        lane_coverage(w_.samples[static_cast<std::size_t>(q)], samples_, batch.coverage.data() + 4 * q);
     batch.active_lanes = active;
     batch.valid_lanes = quads == kBatchQuads ? ~std::uint64_t{0} : (std::uint64_t{1} << (4 * quads)) - 1;
     if (w_.state->raster.sample_rate && samples_ > 1) {
