@@ -102,7 +102,8 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
 
 #define HWSIM_FRONT_END_COUNTERS(X)                                                           \
   X(draws, "draws and dispatches")                                                            \
-  X(state_changes, "pipeline and binding changes between draws")                              \
+  X(state_changes, "pipeline and resource binds")                                             \
+  X(command_words, "32-bit words of the command stream")                                      \
   X(cleared_tiles, "8x8 tiles cleared, all samples and targets")
 
 /// Bytes that units asked for, by stream; what of it DRAM moves is the timing engines' business.

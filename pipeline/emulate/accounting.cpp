@@ -85,6 +85,8 @@ void account_shading(const FragmentBatch& batch, const FragmentProgram& program,
   c.tex.bilinear_probes += batch.tex_bilinear_probes;
   c.tex.texels += batch.image_texels;
   c.mem.texture_read_bytes += batch.image_read_bytes;
+  c.mem.storage_read_bytes += batch.storage_read_bytes;
+  c.mem.storage_write_bytes += batch.storage_write_bytes;
 }
 
 }  // namespace hwsim::pipeline

@@ -242,6 +242,7 @@ class BinShading : protected BinColor {
     batch.tex_bilinear_probes = 0;
     batch.image_texels = 0;
     batch.image_read_bytes = 0;
+    batch.storage_read_bytes = batch.storage_write_bytes = 0;
     const std::uint64_t lines_before = w_.texture_tracker.missed_lines;
     w_.program->run(batch, w_.uniforms);
     w_.texture_tracker.end_batch();

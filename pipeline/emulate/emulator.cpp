@@ -11,6 +11,7 @@
 #include "pipeline/emulate/geometry.h"
 #include "pipeline/emulate/material_views.h"
 #include "pipeline/emulate/transfer.h"
+#include "pipeline/graph/commands.h"
 
 namespace hwsim::pipeline {
 namespace {
@@ -215,6 +216,17 @@ class FrameRunner {
       n.tex.texels += 4 * n.tex.bilinear_probes;
       n.mem.texture_read_bytes += 16 * n.tex.bilinear_probes;
     }
+    work.unique_storage_bytes = unique_storage(pass, work);
+  }
+
+  // Buffers and stored images, or as much of them as was touched at most.
+  std::uint64_t unique_storage(const Pass& pass, const PassWork& work) const {
+    const PassCounters sum = total(work);
+    std::uint64_t bytes = 0;
+    for (const BufferId id : pass.storage) bytes += allocated_bytes(graph_.buffer(id));
+    if (pass.kind == PassKind::compute)
+      for (const ImageId id : pass.targets) bytes += allocated_bytes(graph_.image(id));
+    return std::min(bytes, sum.mem.storage_read_bytes + sum.mem.storage_write_bytes);
   }
 
   void run_draw(const Pass& pass, PassWork& work) {
@@ -227,7 +239,8 @@ class FrameRunner {
     }
     c.chunk_primitives = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(triangles / 256, 32, 4096));
     start_workers(std::max<std::uint64_t>(1, (triangles + c.chunk_primitives - 1) / c.chunk_primitives), c);
-    count_draws(c, work);
+    count_commands(pass, c, work.barrier_before, workers_.front().chunks);
+    count_inputs(c, workers_.front().chunks, work);
     const GeometryOptions geometry{options_.jobs, functional_.post_transform_cache_entries, options_.skip.frustum};
     std::uint32_t first = 0;
     while (first < c.draws.size()) {
@@ -243,17 +256,25 @@ class FrameRunner {
     finish_workers(pass, work);
   }
 
-  void count_draws(const PassContext& c, PassWork& work) {
+  // A draw's commands count where its triangles do.
+  void count_commands(const Pass& pass, const PassContext& c, bool barrier, std::vector<PassCounters>& chunks) const {
+    for (const Command& command : record_pass(graph_, pass, barrier)) {
+      const bool of_draw = pass.kind == PassKind::draw && command.draw < c.draws.size();
+      const std::size_t chunk = of_draw ? c.draws[command.draw].first_primitive / c.chunk_primitives : 0;
+      FrontEndCounters& n = chunks[std::min(chunk, chunks.size() - 1)].fe;
+      n.command_words += command_words(command.kind);
+      const bool binds = command.kind == CommandKind::bind_pipeline || command.kind == CommandKind::bind_resources;
+      n.state_changes += binds ? 1 : 0;
+      n.draws += command.kind >= CommandKind::draw ? 1 : 0;  // draws, dispatches and transfers: they start work
+    }
+  }
+
+  static void count_inputs(const PassContext& c, std::vector<PassCounters>& chunks, PassWork& work) {
     std::set<const Mesh::Part*> parts;
-    const DrawInfo* before = nullptr;
     for (const DrawInfo& draw : c.draws) {
-      const std::uint32_t chunk = std::min<std::uint32_t>(draw.first_primitive / c.chunk_primitives,
-                                                          static_cast<std::uint32_t>(c.chunk_count) - 1);
-      PassCounters& n = workers_.front().chunks[chunk];
-      n.fe.draws += 1;
-      if (before == nullptr || before->batch != draw.batch || before->material != draw.material) n.fe.state_changes += 1;
-      n.mem.constant_read_bytes += 64 + 36 + sizeof(MaterialView);  // transforms and material, as a driver would bind
-      before = &draw;
+      const std::size_t chunk = std::min<std::size_t>(draw.first_primitive / c.chunk_primitives, chunks.size() - 1);
+      // Transforms and material, as a driver would bind them.
+      chunks[chunk].mem.constant_read_bytes += 64 + 36 + sizeof(MaterialView);
       if (!parts.insert(draw.part).second) continue;
       work.unique_index_bytes += std::uint64_t{draw.part->index_count} * static_cast<std::uint64_t>(std::max(2, draw.mesh->index_bytes));
       work.unique_vertex_bytes += std::uint64_t{draw.vertex_count} * static_cast<std::uint64_t>(draw.mesh->vertex_bytes);
@@ -265,8 +286,7 @@ class FrameRunner {
     const auto bins = static_cast<std::uint64_t>(c.bins_x) * static_cast<std::uint64_t>(c.bins_y);
     const std::uint64_t bands = std::min(bins, kFullScreenBands);
     start_workers(bands, c);
-    workers_.front().chunks[0].fe.draws += 1;
-    workers_.front().chunks[0].fe.state_changes += 1;
+    count_commands(pass, c, work.barrier_before, workers_.front().chunks);
     workers_.front().chunks[0].stats.input_assembly_vertices += 3;  // one triangle that covers the screen
     workers_.front().chunks[0].stats.vertex_shader_invocations += 3;
     parallel_for(bins, options_.jobs, [&](std::size_t bin, int worker) {
@@ -282,8 +302,7 @@ class FrameRunner {
     const auto groups = static_cast<std::uint64_t>(pass.groups_x) * static_cast<std::uint64_t>(pass.groups_y);
     const std::uint64_t bands = std::min(groups, kFullScreenBands);
     start_workers(bands, c);
-    workers_.front().chunks[0].fe.draws += 1;
-    workers_.front().chunks[0].fe.state_changes += 1;
+    count_commands(pass, c, work.barrier_before, workers_.front().chunks);
     std::vector<std::vector<std::uint32_t>> memory(
         workers_.size(), std::vector<std::uint32_t>(static_cast<std::size_t>(pass.compute->group_memory_bytes) / 4 + 1));
     std::vector<std::unique_ptr<GroupBatch>> batches;
@@ -306,12 +325,6 @@ class FrameRunner {
       pass.compute->run(batch, pass.uniforms.get());
     });
     finish_workers(pass, work);
-    PassCounters storage;
-    for (const PassCounters& n : work.chunks) storage += n;
-    for (const BufferId id : pass.storage) work.unique_storage_bytes += allocated_bytes(graph_.buffer(id));
-    for (const ImageId id : pass.targets) work.unique_storage_bytes += allocated_bytes(graph_.image(id));
-    work.unique_storage_bytes =
-        std::min(work.unique_storage_bytes, storage.mem.storage_read_bytes + storage.mem.storage_write_bytes);
   }
 
   void run_transfer(const Pass& pass, PassWork& work) {
@@ -326,6 +339,7 @@ class FrameRunner {
     }
     if (source != nullptr) work.raster_samples = source->samples;
     work.chunks = count_transfer(pass, source, targets);
+    count_commands(pass, PassContext{}, work.barrier_before, work.chunks);
   }
 
   Image read_output() {

@@ -78,6 +78,7 @@ struct FragmentBatch {
   std::uint64_t tex_bilinear_probes = 0;  ///< beyond the first of each request
   std::uint64_t image_texels = 0;         ///< unfiltered texels loaded from the pass's images
   std::uint64_t image_read_bytes = 0;     ///< their bytes
+  std::uint64_t storage_read_bytes = 0, storage_write_bytes = 0;  ///< of the pass's buffers
 };
 
 /// Up to 64 vertices in a vertex shader.

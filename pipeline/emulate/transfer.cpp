@@ -136,7 +136,6 @@ std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* sourc
       n.crop.first_touched_tiles += band(tiles, i);
     }
   }
-  if (!chunks.empty()) chunks[0].fe.draws += 1;
   return chunks;
 }
 

@@ -36,6 +36,22 @@ class ComputeLanes {
     return load_texel(image, x, y, sample);
   }
 
+  /// Word `index` of the pass's storage buffer, lanes of `mask` only (others 0).
+  I load_buffer(int slot, I index, M mask) {
+    group_.counters->mem.storage_read_bytes += word_bytes(mask & valid_);
+    return BufferAccess(*group_.resources, slot).load_words(index, mask & valid_);
+  }
+  void store_buffer(int slot, I index, I value, M mask) {
+    group_.counters->mem.storage_write_bytes += word_bytes(mask & valid_);
+    BufferAccess(*group_.resources, slot).store_words(index, value, mask & valid_);
+  }
+  /// Atomic integer add; the words before it.
+  I atomic_add(int slot, I index, I value, M mask) {
+    group_.counters->mem.storage_read_bytes += word_bytes(mask & valid_);
+    group_.counters->mem.storage_write_bytes += word_bytes(mask & valid_);
+    return BufferAccess(*group_.resources, slot).add_words(index, value, mask & valid_);
+  }
+
   /// Writes texel (x, y) of the pass's target, lanes of `mask` only; coordinates are inside the image.
   void store_image(int target, I x, I y, I sample, const Vec4<F>& color, M mask) {
     GpuImage& image = *group_.resources->targets[static_cast<std::size_t>(target)];

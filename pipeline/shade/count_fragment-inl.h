@@ -65,6 +65,19 @@ class CountFragment {
     enter(block, [&]() HWY_ATTR { body(0); });
     blocks_[static_cast<std::size_t>(block)].alu += 2;  // the counter and its comparison
   }
+  I load_buffer(int, I, M) {
+    current_->load += 1;
+    return integer();
+  }
+  void store_buffer(int, I, I, M) {
+    current_->store += 1;
+    writes_storage_ = true;
+  }
+  I atomic_add(int, I, I, M) {
+    current_->atomic += 1;
+    writes_storage_ = true;
+    return integer();
+  }
   std::size_t loop_count(int) const { return 1; }
   void store_image(int, I, I, I, const Vec4<F>&, M) { current_->store += 1; }
   void discard(M) { current_->alu += 1; }
@@ -73,6 +86,7 @@ class CountFragment {
   const BlockOps& blocks() const { return blocks_; }
   int block_count() const { return block_count_; }
   int color_outputs() const { return color_outputs_; }
+  bool writes_storage() const { return writes_storage_; }
   bool reads_coverage() const { return reads_coverage_; }
 
  private:
@@ -94,6 +108,7 @@ class CountFragment {
   int block_count_ = 1;
   int color_outputs_ = 0;
   bool reads_coverage_ = false;
+  bool writes_storage_ = false;
 };
 
 /// Counts a shader and fills a program's costs.
@@ -109,6 +124,7 @@ FragmentProgram describe_fragment_shader(std::string name, void (*run)(FragmentB
   program.block_count = counter.block_count();
   program.color_outputs = counter.color_outputs();
   program.reads_coverage = counter.reads_coverage();
+  program.writes_storage = counter.writes_storage();
   return program;
 }
 

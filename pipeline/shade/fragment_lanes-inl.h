@@ -2,6 +2,7 @@
 //   template <class S> static void run(S& s, const Uniforms& uniforms)
 // written once against this class and CountFragment (shade/count_fragment-inl.h). Per-target include guard.
 #include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/shade/buffer_access-inl.h"
 #include "pipeline/shade/codec-inl.h"
 #include "pipeline/shade/lanes-inl.h"
 #include "pipeline/shade/texture_sampler-inl.h"
@@ -98,6 +99,22 @@ class FragmentLanes {
     batch_.image_read_bytes += lanes * info(image.format).bytes;
     return load_texel(image, x, y, sample);
   }
+  /// Word `index` of the pass's storage buffer, lanes of `mask` only (others 0).
+  I load_buffer(int slot, I index, M mask) {
+    batch_.storage_read_bytes += word_bytes(mask & valid_);
+    return BufferAccess(*batch_.resources, slot).load_words(index, mask & valid_);
+  }
+  void store_buffer(int slot, I index, I value, M mask) {
+    batch_.storage_write_bytes += word_bytes(mask & active_);
+    BufferAccess(*batch_.resources, slot).store_words(index, value, mask & active_);
+  }
+  /// Atomic integer add; the words before it.
+  I atomic_add(int slot, I index, I value, M mask) {
+    batch_.storage_read_bytes += word_bytes(mask & active_);
+    batch_.storage_write_bytes += word_bytes(mask & active_);
+    return BufferAccess(*batch_.resources, slot).add_words(index, value, mask & active_);
+  }
+
   int image_width(int slot) const { return batch_.resources->images[static_cast<std::size_t>(slot)]->width; }
   int image_height(int slot) const { return batch_.resources->images[static_cast<std::size_t>(slot)]->height; }
 

@@ -1,0 +1,71 @@
+// Storage buffers of a pass, word by word, lanes in order: shared by fragment and compute contexts. An index outside
+// the buffer reads 0 and writes nothing, as robust buffer access has it. Per-target include guard.
+#include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/shade/lanes-inl.h"
+
+#if defined(HWSIM_SHADE_BUFFER_ACCESS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_SHADE_BUFFER_ACCESS_INL_H_
+#undef HWSIM_SHADE_BUFFER_ACCESS_INL_H_
+#else
+#define HWSIM_SHADE_BUFFER_ACCESS_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::pipeline::HWY_NAMESPACE {
+
+class BufferAccess {
+ public:
+  BufferAccess(const ResourceView& resources, int slot)
+      : words_(resources.buffers[static_cast<std::size_t>(slot)]),
+        count_(resources.buffer_words[static_cast<std::size_t>(slot)]) {}
+
+  LaneI load_words(LaneI index, LaneM mask) const {
+    HWY_ALIGN std::int32_t at[kVectorLanes], out[kVectorLanes] = {};
+    store(index, at);
+    for (std::uint32_t bits = mask_bits(mask); bits != 0; bits &= bits - 1) {
+      const int lane = __builtin_ctz(bits);
+      if (holds(at[lane])) out[lane] = static_cast<std::int32_t>(__atomic_load_n(words_ + at[lane], __ATOMIC_RELAXED));
+    }
+    return load(out);
+  }
+
+  void store_words(LaneI index, LaneI value, LaneM mask) const {
+    HWY_ALIGN std::int32_t at[kVectorLanes], from[kVectorLanes];
+    store(index, at);
+    store(value, from);
+    for (std::uint32_t bits = mask_bits(mask); bits != 0; bits &= bits - 1) {
+      const int lane = __builtin_ctz(bits);
+      if (holds(at[lane])) __atomic_store_n(words_ + at[lane], static_cast<std::uint32_t>(from[lane]), __ATOMIC_RELAXED);
+    }
+  }
+
+  /// Returns the words before. Sums do not depend on the order; which lane sees which value does.
+  LaneI add_words(LaneI index, LaneI value, LaneM mask) const {
+    HWY_ALIGN std::int32_t at[kVectorLanes], from[kVectorLanes], out[kVectorLanes] = {};
+    store(index, at);
+    store(value, from);
+    for (std::uint32_t bits = mask_bits(mask); bits != 0; bits &= bits - 1) {
+      const int lane = __builtin_ctz(bits);
+      if (holds(at[lane]))
+        out[lane] = static_cast<std::int32_t>(
+            __atomic_fetch_add(words_ + at[lane], static_cast<std::uint32_t>(from[lane]), __ATOMIC_RELAXED));
+    }
+    return load(out);
+  }
+
+ private:
+  bool holds(std::int32_t index) const { return index >= 0 && static_cast<std::uint64_t>(index) < count_; }
+
+  std::uint32_t* words_;
+  std::uint64_t count_;
+};
+
+/// Bytes of one word for each lane of a mask.
+HWY_INLINE std::uint64_t word_bytes(LaneM mask) {
+  return 4 * static_cast<std::uint64_t>(__builtin_popcount(mask_bits(mask)));
+}
+
+}  // namespace hwsim::pipeline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
