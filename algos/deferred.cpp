@@ -55,7 +55,8 @@ void add_gbuffer_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer&
   if (!parts.draws.mask.empty()) pass.batches.push_back(gbuffer_batch(parts, parts.draws.mask, true));
 }
 
-std::shared_ptr<DeferredUniforms> make_uniforms(const FrameGraph& graph, const FrameParts& parts, int samples) {
+std::shared_ptr<DeferredUniforms> make_uniforms(const FrameGraph& graph, const FrameParts& parts,
+                                                int samples) {
   auto u = std::make_shared<DeferredUniforms>();
   u->lighting = parts.lighting;
   if (parts.shadow_map) u->lighting.shadow_slot = kShadowSlot;
@@ -95,7 +96,8 @@ void select_by_stencil(Pass& pass, const GBuffer& g, std::uint8_t value) {
   pass.state.stencil.reference = value;
 }
 
-void add_classify_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g, std::shared_ptr<const void> uniforms) {
+void add_classify_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
+                       std::shared_ptr<const void> uniforms) {
   Pass& pass = graph.add_pass("classify", PassKind::full_screen);
   pass.samples = g.samples;
   pass.depth = g.depth;
@@ -108,7 +110,8 @@ void add_classify_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer
   bind_gbuffer(pass, parts, g);
 }
 
-void add_tile_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g, std::shared_ptr<const void> uniforms) {
+void add_tile_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
+                   std::shared_ptr<const void> uniforms) {
   Pass& pass = graph.add_pass("light_tiles", PassKind::compute);
   const ComputeProgram& program = tile_light_program();
   pass.compute = &program;

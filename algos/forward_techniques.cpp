@@ -11,28 +11,33 @@ namespace {
 using namespace pipeline;
 
 void add_full_screen(FrameGraph& graph, const std::string& name, ImageId source, ImageId target,
-                     const FragmentProgram& program, std::shared_ptr<const void> uniforms, bool additive = false) {
+                     const FragmentProgram& program, std::shared_ptr<const void> uniforms,
+                     bool additive = false) {
   Pass& pass = graph.add_pass(name, PassKind::full_screen);
   pass.sampled = {source};
   pass.color = {target};
   pass.fragment = &program;
   pass.uniforms = std::move(uniforms);
-  if (additive) pass.state.blend = {{true, BlendFactor::one, BlendFactor::one, BlendFactor::one, BlendFactor::one, 0xf}};
+  if (additive)
+    pass.state.blend = {{true, BlendFactor::one, BlendFactor::one, BlendFactor::one, BlendFactor::one, 0xf}};
 }
 
 // Variant A: one big image, box filter.
 void build_ordered(FrameGraph& graph, const FrameParts& parts, int factor) {
-  const ForwardTarget target = make_forward_target(graph, "supersampled", graph.width() * factor, graph.height() * factor, 1);
+  const ForwardTarget target =
+      make_forward_target(graph, "supersampled", graph.width() * factor, graph.height() * factor, 1);
   add_forward(graph, parts, "", target);
   const ImageId output = add_output(graph);
   add_full_screen(graph, "downsample", target.color, output, downsample_program(),
                   std::make_shared<DownsampleUniforms>(DownsampleUniforms{factor}));
 }
 
-// Variant C: jittered frames, summed in floats: fp16 loses increments beyond 2048 samples, and rounds before (techniques 1.2).
+// Variant C: jittered frames, summed in floats: fp16 loses increments beyond 2048 samples, and rounds before
+// (techniques 1.2).
 void build_accumulated(FrameGraph& graph, const FrameParts& parts, int factor) {
   ForwardTarget target = make_forward_target(graph, "frame", graph.width(), graph.height(), 1);
-  const ImageId sum = graph.add_image({"accumulated", Format::rgba32_float, graph.width(), graph.height(), 1});
+  const ImageId sum =
+      graph.add_image({"accumulated", Format::rgba32_float, graph.width(), graph.height(), 1});
   graph.add_clear("accumulate_clear", {sum});
   const float k = static_cast<float>(factor);
   for (int j = 0; j < factor * factor; ++j) {
@@ -47,7 +52,8 @@ void build_accumulated(FrameGraph& graph, const FrameParts& parts, int factor) {
                   std::make_shared<ScaleUniforms>(ScaleUniforms{1.0f / (k * k)}));
 }
 
-void build_multisampled(FrameGraph& graph, const FrameParts& parts, int samples, bool centroid, bool sample_rate) {
+void build_multisampled(FrameGraph& graph, const FrameParts& parts, int samples, bool centroid,
+                        bool sample_rate) {
   ForwardTarget target = make_forward_target(graph, "multisampled", graph.width(), graph.height(), samples);
   target.centroid = centroid;
   target.sample_rate = sample_rate;
@@ -79,9 +85,15 @@ FrameGraph build_ssaa(const FrameRequest& request, const Parameters& parameters)
   const int samples = integer(parameters, "samples");
   const int factor = static_cast<int>(std::lround(std::sqrt(samples)));
   switch (integer(parameters, "variant")) {
-    case 0: build_ordered(graph, parts, factor); break;
-    case 1: build_accumulated(graph, parts, factor); break;
-    default: build_multisampled(graph, parts, samples, false, true); break;
+    case 0:
+      build_ordered(graph, parts, factor);
+      break;
+    case 1:
+      build_accumulated(graph, parts, factor);
+      break;
+    default:
+      build_multisampled(graph, parts, samples, false, true);
+      break;
   }
   return graph;
 }
@@ -89,7 +101,8 @@ FrameGraph build_ssaa(const FrameRequest& request, const Parameters& parameters)
 FrameGraph build_msaa(const FrameRequest& request, const Parameters& parameters) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
-  build_multisampled(graph, parts, integer(parameters, "samples"), integer(parameters, "centroid") != 0, false);
+  build_multisampled(graph, parts, integer(parameters, "samples"), integer(parameters, "centroid") != 0,
+                     false);
   return graph;
 }
 

@@ -22,13 +22,20 @@ DrawLists list_draws(const Scene& scene, const Camera& camera) {
     for (int p = 0; p < static_cast<int>(mesh.parts.size()); ++p) {
       const Mesh::Part& part = mesh.parts[static_cast<std::size_t>(p)];
       switch (scene.materials[static_cast<std::size_t>(part.material)].alpha_mode) {
-        case AlphaMode::opaque: lists.opaque.push_back({i, p}); break;
-        case AlphaMode::mask: lists.mask.push_back({i, p}); break;
-        case AlphaMode::blend: blended.push_back({view_z, {i, p}}); break;
+        case AlphaMode::opaque:
+          lists.opaque.push_back({i, p});
+          break;
+        case AlphaMode::mask:
+          lists.mask.push_back({i, p});
+          break;
+        case AlphaMode::blend:
+          blended.push_back({view_z, {i, p}});
+          break;
       }
     }
   }
-  std::stable_sort(blended.begin(), blended.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::stable_sort(blended.begin(), blended.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   for (const auto& [z, call] : blended) lists.blend.push_back(call);
   return lists;
 }
@@ -57,7 +64,8 @@ void add_point_lights(const FrameRequest& request, LightingUniforms& lighting) {
   if (lighting.point_count == 0) lighting.points.clear();
   for (int i = 0; i < request.point_lights; ++i) {
     PointLight light;
-    for (int axis = 0; axis < 3; ++axis) light.position[axis] = s.bounds_min[axis] + extent[axis] * random.next();
+    for (int axis = 0; axis < 3; ++axis)
+      light.position[axis] = s.bounds_min[axis] + extent[axis] * random.next();
     // Strength such that a light gives about 1/2 at a third of its range.
     const float strength = 0.5f * range * range / 9.0f;
     for (int axis = 0; axis < 3; ++axis) light.color[axis] = strength * (0.3f + 0.7f * random.next());
@@ -74,7 +82,8 @@ glm::mat4 shadow_clip_from_world(const Scene& scene, const glm::vec3& to_light) 
   const glm::mat4 view = glm::lookAt(to_light, glm::vec3(0.0f), up);
   glm::vec3 low(1e30f), high(-1e30f);
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 p((corner & 1) != 0 ? s.bounds_max.x : s.bounds_min.x, (corner & 2) != 0 ? s.bounds_max.y : s.bounds_min.y,
+    const glm::vec3 p((corner & 1) != 0 ? s.bounds_max.x : s.bounds_min.x,
+                      (corner & 2) != 0 ? s.bounds_max.y : s.bounds_min.y,
                       (corner & 4) != 0 ? s.bounds_max.z : s.bounds_min.z);
     const glm::vec3 v(view * glm::vec4(p, 1.0f));
     low = glm::min(low, v);
@@ -89,7 +98,8 @@ glm::mat4 shadow_clip_from_world(const Scene& scene, const glm::vec3& to_light) 
 DrawBatch depth_batch(const glm::mat4& clip_from_world, const std::vector<DrawCall>& draws, bool alpha_test) {
   DrawBatch batch;
   batch.state.depth = {true, true, Compare::less};
-  batch.state.raster.cull = CullMode::none;  // both sides of a surface cast shadows, as for the reference's rays
+  batch.state.raster.cull =
+      CullMode::none;  // both sides of a surface cast shadows, as for the reference's rays
   batch.vertex = alpha_test ? &mesh_uv_program() : &mesh_position_program();
   batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{clip_from_world});
   if (alpha_test) {
@@ -120,26 +130,29 @@ void add_shadow_map(FrameGraph& graph, FrameParts& parts) {
                            glm::scale(glm::mat4(1.0f), glm::vec3(half, -half, 1.0f));
   lighting.shadow_from_world = texels * clip;
   lighting.shadow_slot = 0;
-  // A texel's footprint in meters: moving the receiver by 1.5 of them keeps a slope of 45 degrees from shadowing itself.
+  // A texel's footprint in meters: moving the receiver by 1.5 of them keeps a slope of 45 degrees from
+  // shadowing itself.
   const glm::vec3 row(clip[0][0], clip[1][0], clip[2][0]);
   lighting.shadow_offset_m = 1.5f / (glm::length(row) * half);
   lighting.shadow_bias = 1e-4f;
 }
 
-DrawBatch surface_batch(const FrameParts& parts, const ForwardTarget& target, const std::vector<DrawCall>& draws,
-                        bool alpha_test) {
+DrawBatch surface_batch(const FrameParts& parts, const ForwardTarget& target,
+                        const std::vector<DrawCall>& draws, bool alpha_test) {
   DrawBatch batch;
   batch.state = opaque_state(target);
   batch.vertex = parts.full_varyings ? &mesh_full_program() : &mesh_surface_program();
   batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(
       MeshVertexUniforms{jittered(parts.clip_from_world, target.jitter_px, target.width, target.height)});
   batch.fragment = &forward_program(parts.full_varyings, alpha_test);
-  batch.fragment_uniforms = std::make_shared<ForwardUniforms>(ForwardUniforms{parts.lighting, parts.full_varyings});
+  batch.fragment_uniforms =
+      std::make_shared<ForwardUniforms>(ForwardUniforms{parts.lighting, parts.full_varyings});
   batch.draws = draws;
   return batch;
 }
 
-Pass& add_target_pass(FrameGraph& graph, const FrameParts& parts, const std::string& name, const ForwardTarget& target) {
+Pass& add_target_pass(FrameGraph& graph, const FrameParts& parts, const std::string& name,
+                      const ForwardTarget& target) {
   Pass& pass = graph.add_pass(name, PassKind::draw);
   pass.width = target.width;
   pass.height = target.height;
@@ -153,7 +166,8 @@ Pass& add_target_pass(FrameGraph& graph, const FrameParts& parts, const std::str
 }  // namespace
 
 glm::mat4 jittered(const glm::mat4& clip_from_world, glm::vec2 jitter_px, int width, int height) {
-  // Clip x and y move by a multiple of w: a sample further right sees what lies further right, so geometry moves left.
+  // Clip x and y move by a multiple of w: a sample further right sees what lies further right, so geometry
+  // moves left.
   glm::mat4 result = clip_from_world;
   for (int column = 0; column < 4; ++column) {
     result[column][0] -= 2.0f * jitter_px.x / static_cast<float>(width) * clip_from_world[column][3];
@@ -173,7 +187,8 @@ PipelineState opaque_state(const ForwardTarget& target) {
 
 LightingUniforms frame_lighting(const FrameRequest& request) {
   const Scene& scene = *request.scene;
-  LightingUniforms lighting = make_lighting(scene, scene.cameras.at(static_cast<std::size_t>(request.camera)));
+  LightingUniforms lighting =
+      make_lighting(scene, scene.cameras.at(static_cast<std::size_t>(request.camera)));
   add_point_lights(request, lighting);
   return lighting;
 }
@@ -192,8 +207,8 @@ FrameParts prepare_frame(FrameGraph& graph, const FrameRequest& request) {
   return parts;
 }
 
-ForwardTarget make_forward_target(FrameGraph& graph, const std::string& name, int width, int height, int samples,
-                                  Format color, Format depth) {
+ForwardTarget make_forward_target(FrameGraph& graph, const std::string& name, int width, int height,
+                                  int samples, Format color, Format depth) {
   ForwardTarget target;
   target.width = width;
   target.height = height;
@@ -203,15 +218,18 @@ ForwardTarget make_forward_target(FrameGraph& graph, const std::string& name, in
   return target;
 }
 
-void add_forward(FrameGraph& graph, const FrameParts& parts, const std::string& prefix, const ForwardTarget& target) {
-  graph.add_clear(prefix + "clear", {target.color, target.depth}, glm::vec4(parts.request->scene->background, 1.0f));
+void add_forward(FrameGraph& graph, const FrameParts& parts, const std::string& prefix,
+                 const ForwardTarget& target) {
+  graph.add_clear(prefix + "clear", {target.color, target.depth},
+                  glm::vec4(parts.request->scene->background, 1.0f));
   Pass& pass = add_target_pass(graph, parts, prefix + "forward", target);
   pass.batches.push_back(surface_batch(parts, target, parts.draws.opaque, false));
   if (!parts.draws.mask.empty()) pass.batches.push_back(surface_batch(parts, target, parts.draws.mask, true));
   add_blended(graph, parts, prefix + "blended", target);
 }
 
-void add_blended(FrameGraph& graph, const FrameParts& parts, const std::string& name, const ForwardTarget& target) {
+void add_blended(FrameGraph& graph, const FrameParts& parts, const std::string& name,
+                 const ForwardTarget& target) {
   if (parts.draws.blend.empty()) return;
   Pass& pass = add_target_pass(graph, parts, name, target);
   DrawBatch batch = surface_batch(parts, target, parts.draws.blend, false);

@@ -26,11 +26,12 @@ struct FrameParts {
   pipeline::ImageId shadow_map;  ///< none without a shadow caster
 };
 
-/// The scene's lights and the point lights of the request, without a shadow map: what the ray-traced reference of the
-/// same frame is lit by.
+/// The scene's lights and the point lights of the request, without a shadow map: what the ray-traced
+/// reference of the same frame is lit by.
 pipeline::LightingUniforms frame_lighting(const FrameRequest& request);
 
-/// Adds the shadow map's passes, if there is a caster, and gathers the rest. Point lights of the request are added.
+/// Adds the shadow map's passes, if there is a caster, and gathers the rest. Point lights of the request are
+/// added.
 FrameParts prepare_frame(pipeline::FrameGraph& graph, const FrameRequest& request);
 
 /// A target of a forward pass.
@@ -51,7 +52,8 @@ void add_blended(pipeline::FrameGraph& graph, const FrameParts& parts, const std
 
 /// Depth-stencil image and color image in the frame's size times `scale`.
 ForwardTarget make_forward_target(pipeline::FrameGraph& graph, const std::string& name, int width, int height,
-                                  int samples, Format color = Format::rgba8_srgb, Format depth = Format::d24_unorm_s8);
+                                  int samples, Format color = Format::rgba8_srgb,
+                                  Format depth = Format::d24_unorm_s8);
 
 /// The final image: rgba8_srgb, 1x.
 pipeline::ImageId add_output(pipeline::FrameGraph& graph);

@@ -1,5 +1,6 @@
 #pragma once
-// The ground truth of a frame: rays instead of rasterization and of a shadow map, the same materials and lights.
+// The ground truth of a frame: rays instead of rasterization and of a shadow map, the same materials and
+// lights.
 #include <functional>
 
 #include "algos/technique.h"

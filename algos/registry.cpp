@@ -10,8 +10,13 @@
 namespace hwsim::algos {
 namespace {
 
-constexpr ParameterInfo kCentroid{"centroid", 1, 0, 1, "attributes inside the primitive at partly covered pixels", "off|on"};
-constexpr ParameterInfo kVariant{"variant", 0, 0, 2, "one large image, jittered frames, or sample-rate shading",
+constexpr ParameterInfo kCentroid{
+    "centroid", 1, 0, 1, "attributes inside the primitive at partly covered pixels", "off|on"};
+constexpr ParameterInfo kVariant{"variant",
+                                 0,
+                                 0,
+                                 2,
+                                 "one large image, jittered frames, or sample-rate shading",
                                  "ordered|accumulate|sample_rate"};
 constexpr std::array<ParameterInfo, 2> msaa(double samples) {
   return {ParameterInfo{"samples", samples, samples, samples, "samples a pixel"}, kCentroid};
@@ -21,10 +26,12 @@ constexpr std::array<ParameterInfo, 2> ssaa(double samples) {
 }
 constexpr auto kMsaa2 = msaa(2), kMsaa4 = msaa(4), kMsaa8 = msaa(8);
 constexpr auto kSsaa4 = ssaa(4), kSsaa16 = ssaa(16), kSsaa64 = ssaa(64);
-constexpr std::array<ParameterInfo, 1> kDeferred = {ParameterInfo{"samples", 8, 1, 8, "samples a pixel: 1, 2, 4 or 8"}};
+constexpr std::array<ParameterInfo, 1> kDeferred = {
+    ParameterInfo{"samples", 8, 1, 8, "samples a pixel: 1, 2, 4 or 8"}};
 constexpr std::array<ParameterInfo, 3> kSimpleComplex = {
     ParameterInfo{"samples", 8, 2, 8, "samples a pixel: 2, 4 or 8"},
-    ParameterInfo{"lighting", 0, 0, 1, "full-screen passes with stencil, or 16x16 compute tiles", "stencil|compute"},
+    ParameterInfo{"lighting", 0, 0, 1, "full-screen passes with stencil, or 16x16 compute tiles",
+                  "stencil|compute"},
     ParameterInfo{"normal_dot_min", 0.99, 0, 1, "normals further apart make a pixel complex (cosine)"}};
 
 constexpr std::array<TechniqueInfo, 9> kTechniques = {{
@@ -41,8 +48,9 @@ constexpr std::array<TechniqueInfo, 9> kTechniques = {{
 }};
 
 [[noreturn]] void fail(std::string code, std::string message, std::string hint, std::string help) {
-  throw InputError({Severity::error, std::move(code), std::move(message), {}, std::move(hint), {}, std::move(help)},
-                   ExitStatus::usage);
+  throw InputError(
+      {Severity::error, std::move(code), std::move(message), {}, std::move(hint), {}, std::move(help)},
+      ExitStatus::usage);
 }
 
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& names) {
@@ -91,9 +99,10 @@ double parse_value(const TechniqueInfo& technique, const ParameterInfo& p, std::
     if (s.back() == '.') s.pop_back();
     return s;
   };
-  fail("T003", "technique `" + std::string(technique.id) + "`: " + std::string(p.name) + " = " + std::string(text) +
-                   (p.choices.empty() ? ", must be between " + print(p.min) + " and " + print(p.max)
-                                      : ", must be one of " + std::string(p.choices)),
+  fail("T003",
+       "technique `" + std::string(technique.id) + "`: " + std::string(p.name) + " = " + std::string(text) +
+           (p.choices.empty() ? ", must be between " + print(p.min) + " and " + print(p.max)
+                              : ", must be one of " + std::string(p.choices)),
        "", "`hwsim show " + std::string(technique.id) + "` describes it");
 }
 
@@ -113,7 +122,8 @@ TechniqueChoice parse_technique(std::string_view text) {
     const std::string_view pair = rest.substr(0, comma);
     const std::size_t equals = pair.find('=');
     if (equals == std::string_view::npos)
-      fail("T002", "technique parameter `" + std::string(pair) + "` has no value", "", "write it as key=value");
+      fail("T002", "technique parameter `" + std::string(pair) + "` has no value", "",
+           "write it as key=value");
     const ParameterInfo& p = find_parameter(*choice.info, pair.substr(0, equals));
     choice.parameters[std::string(p.name)] = parse_value(*choice.info, p, pair.substr(equals + 1));
     rest = comma == std::string_view::npos ? std::string_view{} : rest.substr(comma + 1);

@@ -18,9 +18,9 @@ enum class DeferredLighting { stencil, compute_tiles };
 struct FrameRequest {
   std::shared_ptr<const pipeline::Scene> scene;
   int width_px = 1280, height_px = 720;
-  int camera = 0;               ///< index into Scene::cameras
-  int point_lights = 0;         ///< 0..1024 seeded point lights added to those of the scene
-  bool shadows = true;          ///< a shadow map for the scene's shadow caster
+  int camera = 0;        ///< index into Scene::cameras
+  int point_lights = 0;  ///< 0..1024 seeded point lights added to those of the scene
+  bool shadows = true;   ///< a shadow map for the scene's shadow caster
   int shadow_map_px = 2048;
   GpuFeatures features;
   FunctionalConfig functional;
@@ -36,7 +36,7 @@ struct ParameterInfo {
 using Parameters = std::map<std::string, double, std::less<>>;
 
 struct TechniqueInfo {
-  std::string_view id;           ///< "msaa4x"
+  std::string_view id;  ///< "msaa4x"
   std::string_view description;
   std::span<const ParameterInfo> parameters;
   pipeline::FrameGraph (*build)(const FrameRequest& request, const Parameters& parameters) = nullptr;
@@ -50,7 +50,8 @@ struct TechniqueChoice {
   Parameters parameters;  ///< complete: defaults filled in
 };
 
-/// "agaa:c=2,msaa=8". Throws InputError (T0xx) for unknown names (with the nearest), unknown keys and values out of range.
+/// "agaa:c=2,msaa=8". Throws InputError (T0xx) for unknown names (with the nearest), unknown keys and values
+/// out of range.
 TechniqueChoice parse_technique(std::string_view text);
 
 }  // namespace hwsim::algos

@@ -31,8 +31,11 @@ HWY_EXPORT(run_gouraud);
 
 const pipeline::FragmentProgram& gouraud_program() {
   static const pipeline::FragmentProgram program = [] {
-    pipeline::FragmentProgram p = pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::GouraudShader>(
-        "gouraud", [](pipeline::FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_gouraud)(b, u); });
+    pipeline::FragmentProgram p =
+        pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::GouraudShader>(
+            "gouraud", [](pipeline::FragmentBatch& b, const void* u) {
+              HWY_DYNAMIC_DISPATCH(run_gouraud)(b, u);
+            });
     p.varying_scalars = pipeline::SurfaceVaryings::kBasic;
     return p;
   }();

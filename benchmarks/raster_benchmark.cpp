@@ -1,5 +1,5 @@
-// Depth-only and Gouraud passes on random triangles and on a scene's triangles, with all counters on, and llvmpipe
-// drawing the same triangles in the same run: the figures are the rates and their ratio.
+// Depth-only and Gouraud passes on random triangles and on a scene's triangles, with all counters on, and
+// llvmpipe drawing the same triangles in the same run: the figures are the rates and their ratio.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
@@ -36,7 +36,8 @@ float next_random(std::uint64_t& state) {
   return static_cast<float>(state >> 40) * 0x1p-24f;
 }
 
-/// 10,000 triangles of 177 pixels on average: equilateral, turned at random, uniform over the screen and in depth.
+/// 10,000 triangles of 177 pixels on average: equilateral, turned at random, uniform over the screen and in
+/// depth.
 Workload random_triangles() {
   Workload w;
   w.name = "random_10k_177px";
@@ -84,7 +85,8 @@ FrameGraph make_graph(const Workload& w, int samples, bool gouraud) {
   FrameGraph graph(w.scene, kWidth, kHeight);
   const ImageId depth = graph.add_image({"depth", Format::d24_unorm_s8, kWidth, kHeight, samples});
   const ImageId color = graph.add_image({"color", Format::rgba8_unorm, kWidth, kHeight, samples});
-  const ImageId output = samples > 1 ? graph.add_image({"output", Format::rgba8_unorm, kWidth, kHeight, 1}) : color;
+  const ImageId output =
+      samples > 1 ? graph.add_image({"output", Format::rgba8_unorm, kWidth, kHeight, 1}) : color;
   graph.add_clear("clear", {depth, color});
   Pass& pass = graph.add_pass("draw", PassKind::draw);
   pass.samples = samples;
@@ -101,7 +103,12 @@ FrameGraph make_graph(const Workload& w, int samples, bool gouraud) {
     batch.fragment_uniforms = std::make_shared<int>(0);
   }
   for (int i = 0; i < static_cast<int>(w.scene->instances.size()); ++i)
-    for (int p = 0; p < static_cast<int>(w.scene->meshes[static_cast<std::size_t>(w.scene->instances[static_cast<std::size_t>(i)].mesh)].parts.size()); ++p)
+    for (int p = 0;
+         p <
+         static_cast<int>(
+             w.scene->meshes[static_cast<std::size_t>(w.scene->instances[static_cast<std::size_t>(i)].mesh)]
+                 .parts.size());
+         ++p)
       batch.draws.push_back({i, p});
   pass.batches.push_back(std::move(batch));
   if (samples > 1) graph.add_resolve("resolve", color, output);
@@ -184,8 +191,9 @@ void compare_rates(benchmark::State& state, const Workload& w, int samples, bool
 void add(const std::shared_ptr<Workload>& w) {
   for (const bool gouraud : {false, true})
     for (const int samples : {1, 4, 8})
-      benchmark::RegisterBenchmark((w->name + (gouraud ? "/gouraud/" : "/depth/") + std::to_string(samples) + "x").c_str(),
-                                   [w, samples, gouraud](benchmark::State& s) { compare_rates(s, *w, samples, gouraud); })
+      benchmark::RegisterBenchmark(
+          (w->name + (gouraud ? "/gouraud/" : "/depth/") + std::to_string(samples) + "x").c_str(),
+          [w, samples, gouraud](benchmark::State& s) { compare_rates(s, *w, samples, gouraud); })
           ->UseManualTime()
           ->Unit(benchmark::kMillisecond);
 }
@@ -193,7 +201,8 @@ void add(const std::shared_ptr<Workload>& w) {
 }  // namespace
 }  // namespace hwsim::benchmarks
 
-/// Arguments that do not begin with a dash are scenes: files or generator names. Without any: the dragon generator.
+/// Arguments that do not begin with a dash are scenes: files or generator names. Without any: the dragon
+/// generator.
 int main(int argc, char** argv) {
   using namespace hwsim::benchmarks;
   add(std::make_shared<Workload>(random_triangles()));

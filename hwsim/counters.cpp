@@ -22,27 +22,30 @@ constexpr bool is_bytes(std::string_view name) { return name.ends_with("_bytes")
 #define HWSIM_MEM_ENTRY(name, text) HWSIM_ENTRY_OF(mem, name, text)
 
 // The order is that of HWSIM_COUNTER_UNITS; the assertion below and a test on ids keep them together.
-constexpr CounterInfo kCatalog[] = {
-    HWSIM_STATS_COUNTERS(HWSIM_STATS_ENTRY)    //
-    HWSIM_FRONT_END_COUNTERS(HWSIM_FE_ENTRY)   //
-    HWSIM_VS_COUNTERS(HWSIM_VS_ENTRY)          //
-    HWSIM_SETUP_COUNTERS(HWSIM_SETUP_ENTRY)    //
-    HWSIM_RASTER_COUNTERS(HWSIM_RASTER_ENTRY)  //
-    HWSIM_HIZ_COUNTERS(HWSIM_HIZ_ENTRY)        //
-    HWSIM_ZROP_COUNTERS(HWSIM_ZROP_ENTRY)      //
-    HWSIM_PS_COUNTERS(HWSIM_PS_ENTRY)          //
-    HWSIM_SHADER_COUNTERS(HWSIM_SHADER_ENTRY)  //
-    HWSIM_TEX_COUNTERS(HWSIM_TEX_ENTRY)        //
-    HWSIM_CROP_COUNTERS(HWSIM_CROP_ENTRY)      //
-    HWSIM_RESOLVE_COUNTERS(HWSIM_RESOLVE_ENTRY)  //
-    HWSIM_MEM_COUNTERS(HWSIM_MEM_ENTRY)};
+constexpr CounterInfo kCatalog[] = {HWSIM_STATS_COUNTERS(HWSIM_STATS_ENTRY)      //
+                                    HWSIM_FRONT_END_COUNTERS(HWSIM_FE_ENTRY)     //
+                                    HWSIM_VS_COUNTERS(HWSIM_VS_ENTRY)            //
+                                    HWSIM_SETUP_COUNTERS(HWSIM_SETUP_ENTRY)      //
+                                    HWSIM_RASTER_COUNTERS(HWSIM_RASTER_ENTRY)    //
+                                    HWSIM_HIZ_COUNTERS(HWSIM_HIZ_ENTRY)          //
+                                    HWSIM_ZROP_COUNTERS(HWSIM_ZROP_ENTRY)        //
+                                    HWSIM_PS_COUNTERS(HWSIM_PS_ENTRY)            //
+                                    HWSIM_SHADER_COUNTERS(HWSIM_SHADER_ENTRY)    //
+                                    HWSIM_TEX_COUNTERS(HWSIM_TEX_ENTRY)          //
+                                    HWSIM_CROP_COUNTERS(HWSIM_CROP_ENTRY)        //
+                                    HWSIM_RESOLVE_COUNTERS(HWSIM_RESOLVE_ENTRY)  //
+                                    HWSIM_MEM_COUNTERS(HWSIM_MEM_ENTRY)};
 static_assert(std::size(kCatalog) == kCounterCount);
 
 class Checker {
  public:
   explicit Checker(std::span<CounterViolation> storage) : storage_(storage) {}
-  void at_most(std::string_view law, std::uint64_t left, std::uint64_t right) { add(left <= right, law, left, right); }
-  void equal(std::string_view law, std::uint64_t left, std::uint64_t right) { add(left == right, law, left, right); }
+  void at_most(std::string_view law, std::uint64_t left, std::uint64_t right) {
+    add(left <= right, law, left, right);
+  }
+  void equal(std::string_view law, std::uint64_t left, std::uint64_t right) {
+    add(left == right, law, left, right);
+  }
   std::span<const CounterViolation> found() const { return storage_.first(count_); }
 
  private:
@@ -55,11 +58,14 @@ class Checker {
 
 }  // namespace
 
-// PassCounters is a struct of structs of uint64_t only: no padding, and its members are reachable as one array.
-static_assert(sizeof(PassCounters) % sizeof(std::uint64_t) == 0 && alignof(PassCounters) == alignof(std::uint64_t));
+// PassCounters is a struct of structs of uint64_t only: no padding, and its members are reachable as one
+// array.
+static_assert(sizeof(PassCounters) % sizeof(std::uint64_t) == 0 &&
+              alignof(PassCounters) == alignof(std::uint64_t));
 
 std::span<const std::uint64_t, kCounterCount> values(const PassCounters& counters) {
-  return std::span<const std::uint64_t, kCounterCount>(reinterpret_cast<const std::uint64_t*>(&counters), kCounterCount);
+  return std::span<const std::uint64_t, kCounterCount>(reinterpret_cast<const std::uint64_t*>(&counters),
+                                                       kCounterCount);
 }
 
 std::span<std::uint64_t, kCounterCount> values(PassCounters& counters) {
@@ -75,7 +81,8 @@ PassCounters& operator+=(PassCounters& sum, const PassCounters& part) {
 
 std::span<const CounterInfo> counter_catalog() { return kCatalog; }
 
-std::span<const CounterViolation> check_conservation(const PassCounters& c, std::span<CounterViolation> storage) {
+std::span<const CounterViolation> check_conservation(const PassCounters& c,
+                                                     std::span<CounterViolation> storage) {
   Checker check(storage);
   check.equal("setup.culled_* + setup.out_primitives = setup.in_primitives",
               c.setup.culled_frustum_primitives + c.setup.culled_backface_primitives +
@@ -98,11 +105,14 @@ std::span<const CounterViolation> check_conservation(const PassCounters& c, std:
   check.at_most("ps.discarded_invocations <= ps.invocations", c.ps.discarded_invocations, c.ps.invocations);
   check.at_most("shader.alu_lane_ops <= shader.alu_issued_lane_ops_w8", c.shader.alu_lane_ops,
                 c.shader.alu_issued_lane_ops_w8);
-  check.at_most("shader.alu_issued_lane_ops_w8 <= shader.alu_issued_lane_ops_w64", c.shader.alu_issued_lane_ops_w8,
-                c.shader.alu_issued_lane_ops_w64);
-  check.at_most("crop.blended_samples <= crop.written_samples", c.crop.blended_samples, c.crop.written_samples);
-  check.at_most("zrop.first_touched_tiles <= zrop.touched_tiles", c.zrop.first_touched_tiles, c.zrop.touched_tiles);
-  check.at_most("crop.first_touched_tiles <= crop.touched_tiles", c.crop.first_touched_tiles, c.crop.touched_tiles);
+  check.at_most("shader.alu_issued_lane_ops_w8 <= shader.alu_issued_lane_ops_w64",
+                c.shader.alu_issued_lane_ops_w8, c.shader.alu_issued_lane_ops_w64);
+  check.at_most("crop.blended_samples <= crop.written_samples", c.crop.blended_samples,
+                c.crop.written_samples);
+  check.at_most("zrop.first_touched_tiles <= zrop.touched_tiles", c.zrop.first_touched_tiles,
+                c.zrop.touched_tiles);
+  check.at_most("crop.first_touched_tiles <= crop.touched_tiles", c.crop.first_touched_tiles,
+                c.crop.touched_tiles);
   check.at_most("tex.first_touched_lines <= tex.texels", c.tex.first_touched_lines, c.tex.texels);
   return check.found();
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Every count of work, declared once: the line below gives the field, the CSV column, the JSON key, the catalog entry
-// of `hwsim list counters` and the documentation. One count is what the text says it is.
+// Every count of work, declared once: the line below gives the field, the CSV column, the JSON key, the
+// catalog entry of `hwsim list counters` and the documentation. One count is what the text says it is.
 // Counters are integers, so sums do not depend on the number of threads. Ratios are functions, never stored.
 #include <array>
 #include <cstddef>
@@ -13,127 +13,127 @@ namespace hwsim {
 /// Subgroup widths for which divergence is counted during emulation, so that one trace serves them all.
 inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
 
-#define HWSIM_STATS_COUNTERS(X)                                                               \
-  X(input_assembly_vertices, "indices (or vertices of unindexed draws) read")                 \
-  X(input_assembly_primitives, "primitives assembled")                                        \
-  X(vertex_shader_invocations, "vertices shaded: misses of the post-transform cache")         \
-  X(clipping_invocations, "primitives that reached the clipper")                              \
-  X(clipping_primitives, "primitives that left the clipper")                                  \
-  X(fragment_shader_invocations, "fragment shader invocations, helpers included")             \
-  X(compute_shader_invocations, "compute shader invocations")                                 \
+#define HWSIM_STATS_COUNTERS(X)                                                       \
+  X(input_assembly_vertices, "indices (or vertices of unindexed draws) read")         \
+  X(input_assembly_primitives, "primitives assembled")                                \
+  X(vertex_shader_invocations, "vertices shaded: misses of the post-transform cache") \
+  X(clipping_invocations, "primitives that reached the clipper")                      \
+  X(clipping_primitives, "primitives that left the clipper")                          \
+  X(fragment_shader_invocations, "fragment shader invocations, helpers included")     \
+  X(compute_shader_invocations, "compute shader invocations")                         \
   X(samples_passed, "samples that passed every depth and stencil test")
 
-#define HWSIM_VS_COUNTERS(X)                                                                  \
-  X(alu_lane_ops, "vertex shader arithmetic, per vertex")                                     \
-  X(sfu_lane_ops, "vertex shader special functions (reciprocal, root, exp2, log2, sine)")     \
+#define HWSIM_VS_COUNTERS(X)                                                              \
+  X(alu_lane_ops, "vertex shader arithmetic, per vertex")                                 \
+  X(sfu_lane_ops, "vertex shader special functions (reciprocal, root, exp2, log2, sine)") \
   X(output_scalars, "32-bit values written by vertex shaders for later stages")
 
-#define HWSIM_SETUP_COUNTERS(X)                                                               \
-  X(in_primitives, "triangles that reached culling and setup, after clipping")                \
-  X(culled_frustum_primitives, "of these, outside the view volume")                           \
-  X(culled_backface_primitives, "of these, facing away")                                      \
-  X(culled_zero_area_primitives, "of these, without area after snapping")                     \
-  X(culled_sample_miss_primitives, "of these, whose bounding box holds no sample")            \
+#define HWSIM_SETUP_COUNTERS(X)                                                    \
+  X(in_primitives, "triangles that reached culling and setup, after clipping")     \
+  X(culled_frustum_primitives, "of these, outside the view volume")                \
+  X(culled_backface_primitives, "of these, facing away")                           \
+  X(culled_zero_area_primitives, "of these, without area after snapping")          \
+  X(culled_sample_miss_primitives, "of these, whose bounding box holds no sample") \
   X(out_primitives, "of these, sent to the rasterizer")
 
-#define HWSIM_RASTER_COUNTERS(X)                                                              \
-  X(visited_tiles, "8x8 pixel tiles that a triangle's coarse raster reached")                 \
-  X(covered_samples, "samples inside a triangle, before depth and stencil")                   \
-  X(fragments, "pixels of a triangle with a sample left when they are shaded or written")     \
-  X(quads, "2x2 pixel groups formed from these fragments")                                    \
+#define HWSIM_RASTER_COUNTERS(X)                                                          \
+  X(visited_tiles, "8x8 pixel tiles that a triangle's coarse raster reached")             \
+  X(covered_samples, "samples inside a triangle, before depth and stencil")               \
+  X(fragments, "pixels of a triangle with a sample left when they are shaded or written") \
+  X(quads, "2x2 pixel groups formed from these fragments")                                \
   X(partial_quads, "of these, with fewer than four fragments")
 
-#define HWSIM_HIZ_COUNTERS(X)                                                                 \
-  X(tested_tiles, "8x8 tiles that reached the coarse depth test")                             \
-  X(killed_tiles, "of these, rejected whole, without reading a sample")                       \
-  X(accepted_tiles, "of these, known to pass whole")                                          \
+#define HWSIM_HIZ_COUNTERS(X)                                           \
+  X(tested_tiles, "8x8 tiles that reached the coarse depth test")       \
+  X(killed_tiles, "of these, rejected whole, without reading a sample") \
+  X(accepted_tiles, "of these, known to pass whole")                    \
   X(ambiguous_tiles, "of these, sent on to the fine test")
 
-#define HWSIM_ZROP_COUNTERS(X)                                                                \
-  X(early_z_tested_samples, "samples tested against depth and stencil before shading")        \
-  X(early_z_killed_samples, "of these, that failed")                                          \
-  X(late_z_tested_samples, "samples tested against depth and stencil after shading")          \
-  X(late_z_killed_samples, "of these, that failed")                                           \
-  X(written_samples, "samples whose depth or stencil was written")                            \
-  X(touched_tiles, "8x8 depth tiles used, once for each chunk of work that uses them")        \
+#define HWSIM_ZROP_COUNTERS(X)                                                         \
+  X(early_z_tested_samples, "samples tested against depth and stencil before shading") \
+  X(early_z_killed_samples, "of these, that failed")                                   \
+  X(late_z_tested_samples, "samples tested against depth and stencil after shading")   \
+  X(late_z_killed_samples, "of these, that failed")                                    \
+  X(written_samples, "samples whose depth or stencil was written")                     \
+  X(touched_tiles, "8x8 depth tiles used, once for each chunk of work that uses them") \
   X(first_touched_tiles, "8x8 depth tiles used for the first time in the pass")
 
-#define HWSIM_PS_COUNTERS(X)                                                                  \
-  X(invocations, "fragment shader invocations for fragments")                                 \
-  X(helper_invocations, "further invocations that only fill up a quad")                       \
-  X(sample_rate_invocations, "of the invocations, those that ran once for each sample")       \
+#define HWSIM_PS_COUNTERS(X)                                                            \
+  X(invocations, "fragment shader invocations for fragments")                           \
+  X(helper_invocations, "further invocations that only fill up a quad")                 \
+  X(sample_rate_invocations, "of the invocations, those that ran once for each sample") \
   X(discarded_invocations, "of the invocations, those that ended in a discard")
 
-#define HWSIM_SHADER_COUNTERS(X)                                                              \
-  X(alu_lane_ops, "arithmetic of fragment and compute lanes that needed it")                  \
-  X(alu_issued_lane_ops_w8, "the same with idle lanes, subgroups of 8")                       \
-  X(alu_issued_lane_ops_w16, "the same with idle lanes, subgroups of 16")                     \
-  X(alu_issued_lane_ops_w32, "the same with idle lanes, subgroups of 32")                     \
-  X(alu_issued_lane_ops_w64, "the same with idle lanes, subgroups of 64")                     \
-  X(sfu_lane_ops, "special functions of lanes that needed them")                              \
-  X(sfu_issued_lane_ops_w8, "the same with idle lanes, subgroups of 8")                       \
-  X(sfu_issued_lane_ops_w16, "the same with idle lanes, subgroups of 16")                     \
-  X(sfu_issued_lane_ops_w32, "the same with idle lanes, subgroups of 32")                     \
-  X(sfu_issued_lane_ops_w64, "the same with idle lanes, subgroups of 64")                     \
-  X(interp_lane_ops, "attribute scalars interpolated")                                        \
-  X(load_lane_ops, "32-bit loads from buffers and unfiltered image loads")                    \
-  X(store_lane_ops, "32-bit stores to buffers")                                               \
-  X(atomic_lane_ops, "atomic operations")                                                     \
+#define HWSIM_SHADER_COUNTERS(X)                                             \
+  X(alu_lane_ops, "arithmetic of fragment and compute lanes that needed it") \
+  X(alu_issued_lane_ops_w8, "the same with idle lanes, subgroups of 8")      \
+  X(alu_issued_lane_ops_w16, "the same with idle lanes, subgroups of 16")    \
+  X(alu_issued_lane_ops_w32, "the same with idle lanes, subgroups of 32")    \
+  X(alu_issued_lane_ops_w64, "the same with idle lanes, subgroups of 64")    \
+  X(sfu_lane_ops, "special functions of lanes that needed them")             \
+  X(sfu_issued_lane_ops_w8, "the same with idle lanes, subgroups of 8")      \
+  X(sfu_issued_lane_ops_w16, "the same with idle lanes, subgroups of 16")    \
+  X(sfu_issued_lane_ops_w32, "the same with idle lanes, subgroups of 32")    \
+  X(sfu_issued_lane_ops_w64, "the same with idle lanes, subgroups of 64")    \
+  X(interp_lane_ops, "attribute scalars interpolated")                       \
+  X(load_lane_ops, "32-bit loads from buffers and unfiltered image loads")   \
+  X(store_lane_ops, "32-bit stores to buffers")                              \
+  X(atomic_lane_ops, "atomic operations")                                    \
   X(group_memory_lane_ops, "32-bit accesses to group memory")
 
-#define HWSIM_TEX_COUNTERS(X)                                                                 \
-  X(requests, "filtered texture requests, a lane each")                                       \
-  X(bilinear_probes, "bilinear probes: 1 for bilinear, 2 for trilinear, times the anisotropy") \
-  X(texels, "texels read by the filter")                                                      \
+#define HWSIM_TEX_COUNTERS(X)                                                                            \
+  X(requests, "filtered texture requests, a lane each")                                                  \
+  X(bilinear_probes, "bilinear probes: 1 for bilinear, 2 for trilinear, times the anisotropy")           \
+  X(texels, "texels read by the filter")                                                                 \
   X(touched_lines, "64-byte texture lines missed by a 16 KiB cache that starts cold in each screen bin") \
   X(first_touched_lines, "64-byte texture lines used for the first time in the pass")
 
-#define HWSIM_CROP_COUNTERS(X)                                                                \
-  X(exported_fragments, "fragments written to color targets, times the number of targets")    \
-  X(written_samples, "color samples written, all targets")                                    \
-  X(blended_samples, "of these, that read the target and blended")                            \
-  X(single_color_fragments, "exported fragments that covered every sample of their pixel")    \
-  X(touched_tiles, "8x8 color tiles used, all targets, once for each chunk of work")          \
+#define HWSIM_CROP_COUNTERS(X)                                                             \
+  X(exported_fragments, "fragments written to color targets, times the number of targets") \
+  X(written_samples, "color samples written, all targets")                                 \
+  X(blended_samples, "of these, that read the target and blended")                         \
+  X(single_color_fragments, "exported fragments that covered every sample of their pixel") \
+  X(touched_tiles, "8x8 color tiles used, all targets, once for each chunk of work")       \
   X(first_touched_tiles, "8x8 color tiles used for the first time in the pass, all targets")
 
-#define HWSIM_RESOLVE_COUNTERS(X)                                                             \
-  X(read_samples, "samples read by resolves")                                                 \
+#define HWSIM_RESOLVE_COUNTERS(X)             \
+  X(read_samples, "samples read by resolves") \
   X(written_pixels, "pixels written by resolves")
 
-#define HWSIM_FRONT_END_COUNTERS(X)                                                           \
-  X(draws, "draws and dispatches")                                                            \
-  X(state_changes, "pipeline and resource binds")                                             \
-  X(command_words, "32-bit words of the command stream")                                      \
+#define HWSIM_FRONT_END_COUNTERS(X)                      \
+  X(draws, "draws and dispatches")                       \
+  X(state_changes, "pipeline and resource binds")        \
+  X(command_words, "32-bit words of the command stream") \
   X(cleared_tiles, "8x8 tiles cleared, all samples and targets")
 
 /// Bytes that units asked for, by stream; what of it DRAM moves is the timing engines' business.
-#define HWSIM_MEM_COUNTERS(X)                                                                 \
-  X(depth_read_bytes, "depth and stencil read by tests")                                      \
-  X(depth_write_bytes, "depth and stencil written")                                           \
-  X(color_read_bytes, "color read by blending and resolves")                                  \
-  X(color_write_bytes, "color written")                                                       \
-  X(texture_read_bytes, "texels read")                                                        \
-  X(storage_read_bytes, "storage buffers and images read by shaders")                         \
-  X(storage_write_bytes, "storage buffers and images written by shaders")                     \
-  X(vertex_read_bytes, "vertex attributes fetched")                                           \
-  X(index_read_bytes, "indices fetched")                                                      \
-  X(constant_read_bytes, "constants bound")                                                   \
-  X(shader_read_bytes, "shader code bound")                                                   \
+#define HWSIM_MEM_COUNTERS(X)                                             \
+  X(depth_read_bytes, "depth and stencil read by tests")                  \
+  X(depth_write_bytes, "depth and stencil written")                       \
+  X(color_read_bytes, "color read by blending and resolves")              \
+  X(color_write_bytes, "color written")                                   \
+  X(texture_read_bytes, "texels read")                                    \
+  X(storage_read_bytes, "storage buffers and images read by shaders")     \
+  X(storage_write_bytes, "storage buffers and images written by shaders") \
+  X(vertex_read_bytes, "vertex attributes fetched")                       \
+  X(index_read_bytes, "indices fetched")                                  \
+  X(constant_read_bytes, "constants bound")                               \
+  X(shader_read_bytes, "shader code bound")                               \
   X(other_write_bytes, "tile tables and other metadata written")
 
 /// All units: X(struct prefix, id, list)
-#define HWSIM_COUNTER_UNITS(U)              \
-  U(Stats, stats, HWSIM_STATS_COUNTERS)     \
-  U(FrontEnd, fe, HWSIM_FRONT_END_COUNTERS) \
-  U(Vs, vs, HWSIM_VS_COUNTERS)              \
-  U(Setup, setup, HWSIM_SETUP_COUNTERS)     \
-  U(Raster, raster, HWSIM_RASTER_COUNTERS)  \
-  U(Hiz, hiz, HWSIM_HIZ_COUNTERS)           \
-  U(Zrop, zrop, HWSIM_ZROP_COUNTERS)        \
-  U(Ps, ps, HWSIM_PS_COUNTERS)              \
-  U(Shader, shader, HWSIM_SHADER_COUNTERS)  \
-  U(Tex, tex, HWSIM_TEX_COUNTERS)           \
-  U(Crop, crop, HWSIM_CROP_COUNTERS)        \
+#define HWSIM_COUNTER_UNITS(U)                \
+  U(Stats, stats, HWSIM_STATS_COUNTERS)       \
+  U(FrontEnd, fe, HWSIM_FRONT_END_COUNTERS)   \
+  U(Vs, vs, HWSIM_VS_COUNTERS)                \
+  U(Setup, setup, HWSIM_SETUP_COUNTERS)       \
+  U(Raster, raster, HWSIM_RASTER_COUNTERS)    \
+  U(Hiz, hiz, HWSIM_HIZ_COUNTERS)             \
+  U(Zrop, zrop, HWSIM_ZROP_COUNTERS)          \
+  U(Ps, ps, HWSIM_PS_COUNTERS)                \
+  U(Shader, shader, HWSIM_SHADER_COUNTERS)    \
+  U(Tex, tex, HWSIM_TEX_COUNTERS)             \
+  U(Crop, crop, HWSIM_CROP_COUNTERS)          \
   U(Resolve, resolve, HWSIM_RESOLVE_COUNTERS) \
   U(Mem, mem, HWSIM_MEM_COUNTERS)
 
@@ -179,6 +179,7 @@ struct CounterViolation {
   std::uint64_t left = 0;
   std::uint64_t right = 0;
 };
-std::span<const CounterViolation> check_conservation(const PassCounters& counters, std::span<CounterViolation> storage);
+std::span<const CounterViolation> check_conservation(const PassCounters& counters,
+                                                     std::span<CounterViolation> storage);
 
 }  // namespace hwsim

@@ -1,5 +1,6 @@
 #pragma once
-// Formats of images in GPU memory: what the driver allocates, what the ROP and the texture unit are charged for.
+// Formats of images in GPU memory: what the driver allocates, what the ROP and the texture unit are charged
+// for.
 #include <array>
 #include <cstdint>
 #include <string_view>
@@ -8,11 +9,33 @@ namespace hwsim {
 
 enum class Format : std::uint8_t {
   none,
-  r8_unorm, r8_uint, rg8_unorm, rg8_uint, rgba8_unorm, rgba8_srgb, rgba8_snorm, rgba8_uint,
-  rgb10a2_unorm, r11g11b10_float,
-  r16_float, r16_uint, rg16_float, rg16_snorm, rgba16_float, rgba16_unorm, rgba16_snorm,
-  r32_float, r32_uint, rg32_float, rg32_uint, rgba32_float, rgba32_uint,
-  d16_unorm, d24_unorm_s8, d32_float, d32_float_s8,
+  r8_unorm,
+  r8_uint,
+  rg8_unorm,
+  rg8_uint,
+  rgba8_unorm,
+  rgba8_srgb,
+  rgba8_snorm,
+  rgba8_uint,
+  rgb10a2_unorm,
+  r11g11b10_float,
+  r16_float,
+  r16_uint,
+  rg16_float,
+  rg16_snorm,
+  rgba16_float,
+  rgba16_unorm,
+  rgba16_snorm,
+  r32_float,
+  r32_uint,
+  rg32_float,
+  rg32_uint,
+  rgba32_float,
+  rgba32_uint,
+  d16_unorm,
+  d24_unorm_s8,
+  d32_float,
+  d32_float_s8,
 };
 
 /// The class by which ROP, export and texture rates are tabulated (gpus section 5).

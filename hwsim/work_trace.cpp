@@ -4,12 +4,18 @@ namespace hwsim {
 
 std::string_view pass_kind_name(PassKind kind) {
   switch (kind) {
-    case PassKind::draw: return "draw";
-    case PassKind::full_screen: return "full_screen";
-    case PassKind::compute: return "compute";
-    case PassKind::clear: return "clear";
-    case PassKind::copy: return "copy";
-    case PassKind::resolve: return "resolve";
+    case PassKind::draw:
+      return "draw";
+    case PassKind::full_screen:
+      return "full_screen";
+    case PassKind::compute:
+      return "compute";
+    case PassKind::clear:
+      return "clear";
+    case PassKind::copy:
+      return "copy";
+    case PassKind::resolve:
+      return "resolve";
   }
   return "draw";
 }

@@ -1,6 +1,7 @@
 #pragma once
-// The work of a frame, as counted by the functional emulator: the only thing that crosses from pipeline/ to the timing
-// engines. Nothing here depends on clocks, unit counts, cache sizes or DRAM, so one trace is timed many times.
+// The work of a frame, as counted by the functional emulator: the only thing that crosses from pipeline/ to
+// the timing engines. Nothing here depends on clocks, unit counts, cache sizes or DRAM, so one trace is timed
+// many times.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -19,22 +20,22 @@ struct ColorTargetWork {
   bool blended = false;
 };
 
-/// One pass. `chunks` stand in the order in which the hardware meets them: batches of triangles in submission order
-/// for draws, bands of screen tiles for full-screen passes, bands of groups for compute.
+/// One pass. `chunks` stand in the order in which the hardware meets them: batches of triangles in submission
+/// order for draws, bands of screen tiles for full-screen passes, bands of groups for compute.
 struct PassWork {
   std::string name;
   PassKind kind = PassKind::draw;
   int width_px = 0;
   int height_px = 0;
   int raster_samples = 1;
-  bool sample_rate = false;          ///< shaders ran once for each sample
-  bool barrier_before = false;       ///< waits for an earlier pass to drain (it reads what that one wrote)
+  bool sample_rate = false;     ///< shaders ran once for each sample
+  bool barrier_before = false;  ///< waits for an earlier pass to drain (it reads what that one wrote)
   Format depth_format = Format::none;
   int depth_samples = 1;
   bool depth_cleared_before = false;  ///< its depth target was fast-cleared: a first touch needs no read
   bool color_cleared_before = false;  ///< its color targets were: likewise
   std::vector<ColorTargetWork> color_targets;
-  int attribute_scalars = 0;          ///< 32-bit values that the rasterizer interpolates for each fragment
+  int attribute_scalars = 0;  ///< 32-bit values that the rasterizer interpolates for each fragment
   std::uint64_t unique_vertex_bytes = 0;  ///< distinct bytes of vertex buffers read
   std::uint64_t unique_index_bytes = 0;
   std::uint64_t unique_storage_bytes = 0;  ///< distinct bytes of storage buffers read and written

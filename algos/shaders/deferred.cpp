@@ -1,6 +1,5 @@
 #include "algos/shaders/deferred.h"
 
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "algos/shaders/deferred.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -56,17 +55,26 @@ struct DeferredLightShader {
     using I = typename S::I;
     const int index = s.sample_index() < 0 ? 0 : s.sample_index();
     const pipeline::SamplePosition p = u.positions[static_cast<std::size_t>(index)];
-    const auto sample = read_gbuffer(s, u, s.pixel_x(), s.pixel_y(), I(index), F(static_cast<float>(p.x) * 0.0625f),
-                                     F(static_cast<float>(p.y) * 0.0625f));
+    const auto sample =
+        read_gbuffer(s, u, s.pixel_x(), s.pixel_y(), I(index), F(static_cast<float>(p.x) * 0.0625f),
+                     F(static_cast<float>(p.y) * 0.0625f));
     const std::span points(u.lighting.points.data(), s.loop_count(u.lighting.point_count));
     s.output(0, light_sample(s, u, points, sample, s.valid()));
   }
 };
 
-void run_gbuffer(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<GBufferShader<false>>(b, u); }
-void run_gbuffer_mask(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<GBufferShader<true>>(b, u); }
-void run_classify(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<ClassifyShader>(b, u); }
-void run_light(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<DeferredLightShader>(b, u); }
+void run_gbuffer(pipeline::FragmentBatch& b, const void* u) {
+  lanes::run_fragment_shader<GBufferShader<false>>(b, u);
+}
+void run_gbuffer_mask(pipeline::FragmentBatch& b, const void* u) {
+  lanes::run_fragment_shader<GBufferShader<true>>(b, u);
+}
+void run_classify(pipeline::FragmentBatch& b, const void* u) {
+  lanes::run_fragment_shader<ClassifyShader>(b, u);
+}
+void run_light(pipeline::FragmentBatch& b, const void* u) {
+  lanes::run_fragment_shader<DeferredLightShader>(b, u);
+}
 }  // namespace hwsim::algos::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -88,7 +96,8 @@ void call_light(FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_ligh
 template <bool kAlphaTest>
 FragmentProgram describe_gbuffer(bool full, void (*run)(FragmentBatch&, const void*)) {
   FragmentProgram program =
-      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::GBufferShader<kAlphaTest>>(kAlphaTest ? "gbuffer_alpha_test" : "gbuffer", run);
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::GBufferShader<kAlphaTest>>(
+          kAlphaTest ? "gbuffer_alpha_test" : "gbuffer", run);
   program.varying_scalars = full ? pipeline::SurfaceVaryings::kFull : pipeline::SurfaceVaryings::kBasic;
   program.can_discard = kAlphaTest;
   return program;
@@ -104,7 +113,8 @@ const FragmentProgram& gbuffer_program(bool full_varyings, bool alpha_test) {
 
 const FragmentProgram& classify_program() {
   static const FragmentProgram program = [] {
-    FragmentProgram p = pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::ClassifyShader>("classify", call_classify);
+    FragmentProgram p = pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::ClassifyShader>(
+        "classify", call_classify);
     p.can_discard = true;
     return p;
   }();
@@ -113,7 +123,8 @@ const FragmentProgram& classify_program() {
 
 const FragmentProgram& deferred_light_program() {
   static const FragmentProgram program =
-      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::DeferredLightShader>("deferred_light", call_light);
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::DeferredLightShader>("deferred_light",
+                                                                                            call_light);
   return program;
 }
 

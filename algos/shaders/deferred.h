@@ -9,14 +9,20 @@
 namespace hwsim::algos {
 
 /// Image slots of lighting passes.
-enum GBufferSlot : int { kNormalSlot = 0, kAlbedoSlot = 1, kGradientSlot = 2, kDepthSlot = 3, kShadowSlot = 4 };
+enum GBufferSlot : int {
+  kNormalSlot = 0,
+  kAlbedoSlot = 1,
+  kGradientSlot = 2,
+  kDepthSlot = 3,
+  kShadowSlot = 4
+};
 
 struct GBufferUniforms {
   glm::mat4 view_from_world{1.0f};
   bool full_varyings = false;
 };
-/// Colors: rgba16_float normal (octahedral) x, y, roughness, emissive luminance; rgba8_srgb base color and metallic;
-/// rg16_float view-space dz/dx, dz/dy.
+/// Colors: rgba16_float normal (octahedral) x, y, roughness, emissive luminance; rgba8_srgb base color and
+/// metallic; rg16_float view-space dz/dx, dz/dy.
 const pipeline::FragmentProgram& gbuffer_program(bool full_varyings, bool alpha_test);
 
 struct DeferredUniforms {
@@ -34,8 +40,8 @@ struct DeferredUniforms {
 const pipeline::FragmentProgram& classify_program();
 /// Lights sample 0 at pixel rate, or the invocation's sample at sample rate.
 const pipeline::FragmentProgram& deferred_light_program();
-/// 16x16 tiles: lights culled against the tile's depth bounds, sample 0 of each pixel lit, further samples of complex
-/// pixels redistributed over the group.
+/// 16x16 tiles: lights culled against the tile's depth bounds, sample 0 of each pixel lit, further samples of
+/// complex pixels redistributed over the group.
 const pipeline::ComputeProgram& tile_light_program();
 
 }  // namespace hwsim::algos

@@ -1,13 +1,12 @@
 #include "algos/shaders/forward.h"
 
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "algos/shaders/forward.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include "pipeline/shade/count_fragment-inl.h"
-#include "pipeline/shade/surface-inl.h"
 #include "pipeline/shade/fragment_lanes-inl.h"
+#include "pipeline/shade/surface-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::algos::HWY_NAMESPACE {
@@ -42,9 +41,15 @@ struct AlphaTestShader {
   }
 };
 
-void run_forward(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<ForwardShader<false>>(b, u); }
-void run_forward_mask(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<ForwardShader<true>>(b, u); }
-void run_alpha_test(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<AlphaTestShader>(b, u); }
+void run_forward(pipeline::FragmentBatch& b, const void* u) {
+  lanes::run_fragment_shader<ForwardShader<false>>(b, u);
+}
+void run_forward_mask(pipeline::FragmentBatch& b, const void* u) {
+  lanes::run_fragment_shader<ForwardShader<true>>(b, u);
+}
+void run_alpha_test(pipeline::FragmentBatch& b, const void* u) {
+  lanes::run_fragment_shader<AlphaTestShader>(b, u);
+}
 }  // namespace hwsim::algos::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -57,15 +62,20 @@ HWY_EXPORT(run_alpha_test);
 namespace {
 template <bool kAlphaTest>
 pipeline::FragmentProgram describe_forward(bool full, void (*run)(pipeline::FragmentBatch&, const void*)) {
-  pipeline::FragmentProgram program = pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::ForwardShader<kAlphaTest>>(
-      kAlphaTest ? "forward_alpha_test" : "forward", run);
+  pipeline::FragmentProgram program =
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::ForwardShader<kAlphaTest>>(
+          kAlphaTest ? "forward_alpha_test" : "forward", run);
   program.varying_scalars = full ? pipeline::SurfaceVaryings::kFull : pipeline::SurfaceVaryings::kBasic;
   program.can_discard = kAlphaTest;
   return program;
 }
 void call_forward(pipeline::FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_forward)(b, u); }
-void call_forward_mask(pipeline::FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_forward_mask)(b, u); }
-void call_alpha_test(pipeline::FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_alpha_test)(b, u); }
+void call_forward_mask(pipeline::FragmentBatch& b, const void* u) {
+  HWY_DYNAMIC_DISPATCH(run_forward_mask)(b, u);
+}
+void call_alpha_test(pipeline::FragmentBatch& b, const void* u) {
+  HWY_DYNAMIC_DISPATCH(run_alpha_test)(b, u);
+}
 }  // namespace
 
 const pipeline::FragmentProgram& forward_program(bool full_varyings, bool alpha_test) {
@@ -77,7 +87,9 @@ const pipeline::FragmentProgram& forward_program(bool full_varyings, bool alpha_
 
 const pipeline::FragmentProgram& alpha_test_program() {
   static const pipeline::FragmentProgram program = [] {
-    pipeline::FragmentProgram p = pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::AlphaTestShader>("alpha_test", call_alpha_test);
+    pipeline::FragmentProgram p =
+        pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::AlphaTestShader>("alpha_test",
+                                                                                          call_alpha_test);
     p.varying_scalars = 2;
     p.can_discard = true;
     return p;

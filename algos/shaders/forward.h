@@ -9,7 +9,8 @@ struct ForwardUniforms {
   bool full_varyings = false;  ///< tangents and vertex colors are interpolated
 };
 
-/// Material and all lights in one pass; color 0 is linear RGBA. `alpha_test`: discards below the material's cutoff.
+/// Material and all lights in one pass; color 0 is linear RGBA. `alpha_test`: discards below the material's
+/// cutoff.
 const pipeline::FragmentProgram& forward_program(bool full_varyings, bool alpha_test);
 
 struct AlphaTestUniforms {};

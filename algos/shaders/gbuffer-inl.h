@@ -16,7 +16,9 @@ namespace hwsim::algos::HWY_NAMESPACE {
 namespace lanes = pipeline::HWY_NAMESPACE;
 
 template <class F>
-F copy_sign_of(F magnitude, F sign) { return select(sign < F(0.0f), F(0.0f) - magnitude, magnitude); }
+F copy_sign_of(F magnitude, F sign) {
+  return select(sign < F(0.0f), F(0.0f) - magnitude, magnitude);
+}
 
 /// Unit vector to the octahedron's net, [-1, 1]^2 (Cigolle et al. 2014).
 template <class F>
@@ -24,7 +26,8 @@ lanes::Vec2<F> encode_normal(const lanes::Vec3<F>& n) {
   const F scale = F(1.0f) / max(abs(n.x) + abs(n.y) + abs(n.z), F(1e-20f));
   const F x = n.x * scale, y = n.y * scale;
   const auto lower = n.z < F(0.0f);
-  return {select(lower, copy_sign_of(F(1.0f) - abs(y), x), x), select(lower, copy_sign_of(F(1.0f) - abs(x), y), y)};
+  return {select(lower, copy_sign_of(F(1.0f) - abs(y), x), x),
+          select(lower, copy_sign_of(F(1.0f) - abs(x), y), y)};
 }
 
 template <class F>
@@ -46,15 +49,17 @@ template <class S, class F, class I>
 lanes::Vec3<F> unproject(const glm::mat4& m, const DeferredUniforms& u, I x, I y, F ox, F oy, F z) {
   const F ndc_x = (to_float(x) + F(0.5f) + ox) * F(2.0f / static_cast<float>(u.width)) - F(1.0f);
   const F ndc_y = F(1.0f) - (to_float(y) + F(0.5f) + oy) * F(2.0f / static_cast<float>(u.height));
-  const auto row = [&](int r) HWY_ATTR { return F(m[0][r]) * ndc_x + F(m[1][r]) * ndc_y + F(m[2][r]) * z + F(m[3][r]); };
+  const auto row = [&](int r) HWY_ATTR {
+    return F(m[0][r]) * ndc_x + F(m[1][r]) * ndc_y + F(m[2][r]) * z + F(m[3][r]);
+  };
   const F inv_w = F(1.0f) / row(3);
   return {row(0) * inv_w, row(1) * inv_w, row(2) * inv_w};
 }
 
 template <class S>
 GBufferSample<typename S::F, typename S::M> read_gbuffer(S& s, const DeferredUniforms& u, typename S::I x,
-                                                         typename S::I y, typename S::I sample, typename S::F ox,
-                                                         typename S::F oy) {
+                                                         typename S::I y, typename S::I sample,
+                                                         typename S::F ox, typename S::F oy) {
   using F = typename S::F;
   const auto shape = s.load_image(kNormalSlot, x, y, sample);
   const auto base = s.load_image(kAlbedoSlot, x, y, sample);
@@ -71,7 +76,8 @@ GBufferSample<typename S::F, typename S::M> read_gbuffer(S& s, const DeferredUni
 
 /// View-space z of a sample (negative in front of the camera).
 template <class S>
-typename S::F view_z(S& s, const DeferredUniforms& u, typename S::I x, typename S::I y, typename S::I sample) {
+typename S::F view_z(S& s, const DeferredUniforms& u, typename S::I x, typename S::I y,
+                     typename S::I sample) {
   using F = typename S::F;
   const F z = s.load_image(kDepthSlot, x, y, sample).x;
   const glm::mat4& m = u.view_from_clip;  // rows 2 and 3 have no x and y in the cameras' projections
@@ -98,11 +104,13 @@ typename S::M is_complex(S& s, const DeferredUniforms& u, int loop_block, typena
   return complex;
 }
 
-/// The lit color of one sample; the background where nothing was drawn. Clamped as an 8-bit target would clamp it.
+/// The lit color of one sample; the background where nothing was drawn. Clamped as an 8-bit target would
+/// clamp it.
 template <class S>
-lanes::Vec4<typename S::F> light_sample(S& s, const DeferredUniforms& u, std::span<const pipeline::PointLight> points,
-                                           const GBufferSample<typename S::F, typename S::M>& sample,
-                                           typename S::M mask) {
+lanes::Vec4<typename S::F> light_sample(S& s, const DeferredUniforms& u,
+                                        std::span<const pipeline::PointLight> points,
+                                        const GBufferSample<typename S::F, typename S::M>& sample,
+                                        typename S::M mask) {
   using F = typename S::F;
   const auto lit = lanes::light_surface(s, u.lighting, points, sample.surface, mask & sample.covered);
   const auto color = select(sample.covered, lit, lanes::broadcast<F>(u.background));

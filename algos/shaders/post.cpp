@@ -1,6 +1,5 @@
 #include "algos/shaders/post.h"
 
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "algos/shaders/post.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -38,7 +37,9 @@ struct ScaleShader {
   }
 };
 
-void run_downsample(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<DownsampleShader>(b, u); }
+void run_downsample(pipeline::FragmentBatch& b, const void* u) {
+  lanes::run_fragment_shader<DownsampleShader>(b, u);
+}
 void run_scale(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<ScaleShader>(b, u); }
 }  // namespace hwsim::algos::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -49,14 +50,19 @@ HWY_EXPORT(run_downsample);
 HWY_EXPORT(run_scale);
 
 const pipeline::FragmentProgram& downsample_program() {
-  static const pipeline::FragmentProgram program = pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::DownsampleShader>(
-      "downsample", [](pipeline::FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_downsample)(b, u); });
+  static const pipeline::FragmentProgram program =
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::DownsampleShader>(
+          "downsample", [](pipeline::FragmentBatch& b, const void* u) {
+            HWY_DYNAMIC_DISPATCH(run_downsample)(b, u);
+          });
   return program;
 }
 
 const pipeline::FragmentProgram& scale_program() {
-  static const pipeline::FragmentProgram program = pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::ScaleShader>(
-      "scale", [](pipeline::FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_scale)(b, u); });
+  static const pipeline::FragmentProgram program =
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::ScaleShader>(
+          "scale", [](pipeline::FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_scale)
+                                                                   (b, u); });
   return program;
 }
 

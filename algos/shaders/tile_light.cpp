@@ -8,8 +8,8 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include "algos/shaders/gbuffer-inl.h"
-#include "pipeline/shade/count_fragment-inl.h"
 #include "pipeline/shade/compute_lanes-inl.h"
+#include "pipeline/shade/count_fragment-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::algos::HWY_NAMESPACE {
@@ -18,12 +18,12 @@ namespace lanes = pipeline::HWY_NAMESPACE;
 inline constexpr int kTilePx = 16;
 
 enum TileBlock : int {
-  kBoundsBlock = 1,      // depth of each sample, for the tile's bounds
-  kCullBlock = 2,        // a light against the tile
+  kBoundsBlock = 1,  // depth of each sample, for the tile's bounds
+  kCullBlock = 2,    // a light against the tile
   kFirstSampleBlock = 3,
   kTileClassifyBlock = 4,
   kOtherSampleBlock = 5,
-  kReplicateBlock = 10   // a simple pixel's color stored to a further sample
+  kReplicateBlock = 10  // a simple pixel's color stored to a further sample
 };
 
 template <class S, class Bounds>
@@ -36,8 +36,9 @@ void gather_bounds(S& s, const DeferredUniforms& u, Bounds& bounds) {
 }
 
 template <class S>
-lanes::Vec4<typename S::F> light_at(S& s, const DeferredUniforms& u, std::span<const pipeline::PointLight> points,
-                                       typename S::I sample, typename S::F ox, typename S::F oy) {
+lanes::Vec4<typename S::F> light_at(S& s, const DeferredUniforms& u,
+                                    std::span<const pipeline::PointLight> points, typename S::I sample,
+                                    typename S::F ox, typename S::F oy) {
   const auto g = read_gbuffer(s, u, s.pixel_x(), s.pixel_y(), sample, ox, oy);
   return light_sample(s, u, points, g, s.valid());
 }
@@ -55,18 +56,22 @@ inline pipeline::ComputeProgram describe_tile_light(void (*run)(pipeline::GroupB
   gather_bounds(s, u, bounds);
   using F = pipeline::CountF;
   using I = pipeline::CountI;
-  s.branch(kCullBlock, s.valid(), [&]() HWY_ATTR {  // the light's sphere against the tile's box, and a slot in the list
-    const auto p = lanes::broadcast<F>(u.lighting.points[0].position);
-    const auto v = s.load_image(kDepthSlot, s.pixel_x(), s.pixel_y(), I(0));
-    const lanes::Vec3<F> d = {max(v.x - p.x, p.x - v.y), max(v.y - p.y, p.y - v.z), max(v.z - p.z, p.z - v.w)};
-    (void)(dot(d, d) < v.x);
-  });
+  s.branch(kCullBlock, s.valid(),
+           [&]() HWY_ATTR {  // the light's sphere against the tile's box, and a slot in the list
+             const auto p = lanes::broadcast<F>(u.lighting.points[0].position);
+             const auto v = s.load_image(kDepthSlot, s.pixel_x(), s.pixel_y(), I(0));
+             const lanes::Vec3<F> d = {max(v.x - p.x, p.x - v.y), max(v.y - p.y, p.y - v.z),
+                                       max(v.z - p.z, p.z - v.w)};
+             (void)(dot(d, d) < v.x);
+           });
   s.branch(kFirstSampleBlock, s.valid(), [&]() HWY_ATTR {
-    s.store_image(0, s.pixel_x(), s.pixel_y(), I(0), light_at(s, u, points, I(0), F(0.0f), F(0.0f)), s.valid());
+    s.store_image(0, s.pixel_x(), s.pixel_y(), I(0), light_at(s, u, points, I(0), F(0.0f), F(0.0f)),
+                  s.valid());
   });
   (void)is_complex(s, u, kTileClassifyBlock, s.pixel_x(), s.pixel_y());
   s.branch(kOtherSampleBlock, s.valid(), [&]() HWY_ATTR {
-    s.store_image(0, s.pixel_x(), s.pixel_y(), I(0), light_at(s, u, points, I(0), F(0.0f), F(0.0f)), s.valid());
+    s.store_image(0, s.pixel_x(), s.pixel_y(), I(0), light_at(s, u, points, I(0), F(0.0f), F(0.0f)),
+                  s.valid());
   });
   s.branch(kReplicateBlock, s.valid(), [&]() HWY_ATTR { s.store_image(0, I(0), I(0), I(0), {}, s.valid()); });
   pipeline::ComputeProgram program;
@@ -84,14 +89,15 @@ inline pipeline::ComputeProgram describe_tile_light(void (*run)(pipeline::GroupB
 }
 
 using lanes::ComputeLanes;
+using lanes::kVectorLanes;
 using lanes::LaneF;
 using lanes::LaneI;
 using lanes::LaneM;
-using lanes::kVectorLanes;
 
 struct LaneBounds {
   LaneF nearest, farthest;  // view z is negative
-  LaneBounds() : nearest(-1e30f), farthest(1e30f) {}  // an implicit constructor would not get the vector target
+  LaneBounds()
+      : nearest(-1e30f), farthest(1e30f) {}  // an implicit constructor would not get the vector target
   void add(LaneF z, LaneM mask) {
     nearest = select(mask, max(nearest, z), nearest);
     farthest = select(mask, min(farthest, z), farthest);
@@ -141,7 +147,8 @@ class TileLighter {
     far_ = *std::min_element(farthest, farthest + kVectorLanes);
   }
 
-  // The box around the tile's frustum between its depth bounds, in view space; a light whose sphere misses it goes.
+  // The box around the tile's frustum between its depth bounds, in view space; a light whose sphere misses it
+  // goes.
   void cull_lights() {
     const int count = u_.lighting.point_count;
     if (count == 0 || near_ < far_) return;
@@ -153,7 +160,8 @@ class TileLighter {
       low = glm::min(low, p);
       high = glm::max(high, p);
     }
-    for (const pipeline::PointLight& light : std::span(u_.lighting.points.data(), static_cast<std::size_t>(count))) {
+    for (const pipeline::PointLight& light :
+         std::span(u_.lighting.points.data(), static_cast<std::size_t>(count))) {
       const glm::vec3 p(u_.view_from_world * glm::vec4(light.position, 1.0f));
       const glm::vec3 d = glm::max(glm::max(low - p, p - high), glm::vec3(0.0f));
       if (glm::dot(d, d) * light.inv_range2 < 1.0f) points_.push_back(light);
@@ -239,8 +247,8 @@ class TileLighter {
     const LaneI samples = lanes::load(sample);
     ComputeLanes s(g_, first_lane, lanes::load(x), lanes::load(y), samples, lanes::load(valid) == LaneI(1));
     s.branch(kOtherSampleBlock, s.valid(), [&]() HWY_ATTR {
-      s.store_image(0, s.pixel_x(), s.pixel_y(), samples, light_at(s, u_, points_, samples, lanes::load(ox), lanes::load(oy)),
-                    s.valid());
+      s.store_image(0, s.pixel_x(), s.pixel_y(), samples,
+                    light_at(s, u_, points_, samples, lanes::load(ox), lanes::load(oy)), s.valid());
     });
   }
 
@@ -269,7 +277,8 @@ HWY_EXPORT(run_tile_light);
 
 const pipeline::ComputeProgram& tile_light_program() {
   static const pipeline::ComputeProgram program = HWY_NAMESPACE::describe_tile_light(
-      [](pipeline::GroupBatch& g, const void* u) { HWY_DYNAMIC_DISPATCH(run_tile_light)(g, u); });
+      [](pipeline::GroupBatch& g, const void* u) { HWY_DYNAMIC_DISPATCH(run_tile_light)
+                                                   (g, u); });
   return program;
 }
 

@@ -13,18 +13,24 @@ std::string first_message(const std::vector<Diagnostic>& diagnostics) {
 
 const char* severity_name(Severity severity) {
   switch (severity) {
-    case Severity::note: return "note";
-    case Severity::warning: return "warning";
-    case Severity::error: return "error";
+    case Severity::note:
+      return "note";
+    case Severity::warning:
+      return "warning";
+    case Severity::error:
+      return "error";
   }
   return "error";
 }
 
 const char* severity_color(Severity severity) {
   switch (severity) {
-    case Severity::note: return "\033[1;36m";
-    case Severity::warning: return "\033[1;33m";
-    case Severity::error: return "\033[1;31m";
+    case Severity::note:
+      return "\033[1;36m";
+    case Severity::warning:
+      return "\033[1;33m";
+    case Severity::error:
+      return "\033[1;31m";
   }
   return "";
 }
@@ -74,7 +80,8 @@ std::string render(const Diagnostic& d, bool color) {
   out += reset + ": " + d.message + "\n";
   if (!d.place.file.empty()) {
     out += "  --> " + d.place.file;
-    if (d.place.line > 0) out += ":" + std::to_string(d.place.line) + ":" + std::to_string(std::max(1, d.place.column));
+    if (d.place.line > 0)
+      out += ":" + std::to_string(d.place.line) + ":" + std::to_string(std::max(1, d.place.column));
     out += "\n";
   }
   const bool excerpt = d.place.line > 0 && !d.place.line_text.empty();

@@ -30,7 +30,14 @@ struct Diagnostic {
 };
 
 /// Exit statuses of the program (docs/, `interfaces` section 2).
-enum class ExitStatus { done = 0, run_failed = 1, usage = 2, invalid_input = 3, check_not_met = 4, some_points_failed = 5 };
+enum class ExitStatus {
+  done = 0,
+  run_failed = 1,
+  usage = 2,
+  invalid_input = 3,
+  check_not_met = 4,
+  some_points_failed = 5
+};
 
 /// Bad input. Thrown with all diagnostics found, first cause first; nothing has been written by then.
 class InputError : public std::runtime_error {

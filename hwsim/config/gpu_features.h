@@ -1,7 +1,7 @@
 #pragma once
-// What the GPU can do at all. A technique that needs a switch that is off takes its documented emulation, or ends in an
-// error that names the switch ("gpu.features.native_msaa_max"). These and FunctionalConfig are the only parts of a GPU
-// that change what the functional emulator does; everything else only changes the timing.
+// What the GPU can do at all. A technique that needs a switch that is off takes its documented emulation, or
+// ends in an error that names the switch ("gpu.features.native_msaa_max"). These and FunctionalConfig are the
+// only parts of a GPU that change what the functional emulator does; everything else only changes the timing.
 namespace hwsim {
 
 struct GpuFeatures {

@@ -43,23 +43,24 @@ struct PassTiming {
   std::array<double, kUnitCount> busy_ns{};    ///< time a unit would need alone
   std::array<double, kUnitCount> sol_ratio{};  ///< busy / pass time, 0..1
   std::array<double, kUnitCount> stack_ns{};   ///< exclusive share of the pass time; sums to time_ns
-  double overhead_ns = 0.0;                    ///< of the time, fixed cost: launch, drain, barrier (part of the stack of fe)
-  Unit limiter = Unit::fe;                     ///< the unit with the largest share
+  double overhead_ns = 0.0;  ///< of the time, fixed cost: launch, drain, barrier (part of the stack of fe)
+  Unit limiter = Unit::fe;   ///< the unit with the largest share
   StreamBytes dram_bytes;
 };
 
 struct FrameTiming {
   Engine engine = Engine::queue;
-  double time_ns = 0.0;                        ///< sum of the passes
+  double time_ns = 0.0;                              ///< sum of the passes
   std::optional<std::array<double, 2>> interval_ns;  ///< 90 % prediction interval; none while uncalibrated
   Support support = Support::uncalibrated;
   std::vector<PassTiming> passes;
-  StreamBytes dram_bytes;                      ///< sum of the passes
+  StreamBytes dram_bytes;  ///< sum of the passes
 };
 
 FrameTiming time_frame(const WorkTrace& trace, const GpuConfig& gpu, Engine engine);
 
 /// The invariants of interfaces section 1 (bytes/time <= peak, sums); empty when all hold.
-std::vector<std::string> check_timing(const FrameTiming& timing, const WorkTrace& trace, const GpuConfig& gpu);
+std::vector<std::string> check_timing(const FrameTiming& timing, const WorkTrace& trace,
+                                      const GpuConfig& gpu);
 
 }  // namespace hwsim

@@ -12,7 +12,8 @@ void parallel_for(std::size_t count, int jobs, const std::function<void(std::siz
     return;
   }
   // Without it TBB starts no more threads than there are processors, and prints a warning.
-  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(jobs));
+  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(jobs));
   tbb::task_arena arena(jobs);
   arena.execute([&] {
     tbb::parallel_for(

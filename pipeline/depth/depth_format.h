@@ -1,6 +1,6 @@
 #pragma once
-// Depth is kept and compared as an integer: D16 and D24 by definition, D32F because the bits of floats in [0, 1] order
-// as the floats do. So one integer comparison serves every format.
+// Depth is kept and compared as an integer: D16 and D24 by definition, D32F because the bits of floats in [0,
+// 1] order as the floats do. So one integer comparison serves every format.
 #include <bit>
 #include <cstdint>
 
@@ -11,9 +11,12 @@ namespace hwsim::pipeline {
 /// 65535 for D16, 2^24 - 1 for D24, 0 for the float formats.
 constexpr float depth_scale(Format format) {
   switch (format) {
-    case Format::d16_unorm: return 65535.0f;
-    case Format::d24_unorm_s8: return 16777215.0f;
-    default: return 0.0f;
+    case Format::d16_unorm:
+      return 65535.0f;
+    case Format::d24_unorm_s8:
+      return 16777215.0f;
+    default:
+      return 0.0f;
   }
 }
 

@@ -16,11 +16,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
-/// Depth of a triangle at (x, y) pixels from its reference pixel's corner, as stored. The only place where depth is
-/// evaluated, so that EQUAL passes meet the bits of the pre-pass.
+/// Depth of a triangle at (x, y) pixels from its reference pixel's corner, as stored. The only place where
+/// depth is evaluated, so that EQUAL passes meet the bits of the pre-pass.
 HWY_INLINE LaneI depth_at(const PlaneEquation& z, LaneF x, LaneF y, float scale) {
   const LaneF plane = (LaneF(z.base) + LaneF(z.ddy) * y) + LaneF(z.ddx) * x;
-  // Never NaN, so the plain instructions agree on all targets but for the sign of zero, which the sum below removes.
+  // Never NaN, so the plain instructions agree on all targets but for the sign of zero, which the sum below
+  // removes.
   const LaneF value(hn::Min(hn::Max(plane.v, hn::Zero(DF())), hn::Set(DF(), 1.0f)));
   if (scale == 0.0f) return float_to_bits(value + LaneF(0.0f));
   return round_to_int(value * LaneF(scale));
@@ -28,22 +29,31 @@ HWY_INLINE LaneI depth_at(const PlaneEquation& z, LaneF x, LaneF y, float scale)
 
 HWY_INLINE LaneM compare_depth(Compare compare, LaneI a, LaneI b) {
   switch (compare) {
-    case Compare::never: return a != a;
-    case Compare::less: return a < b;
-    case Compare::equal: return a == b;
-    case Compare::less_equal: return !(a > b);
-    case Compare::greater: return a > b;
-    case Compare::not_equal: return a != b;
-    case Compare::greater_equal: return !(a < b);
-    case Compare::always: return a == a;
+    case Compare::never:
+      return a != a;
+    case Compare::less:
+      return a < b;
+    case Compare::equal:
+      return a == b;
+    case Compare::less_equal:
+      return !(a > b);
+    case Compare::greater:
+      return a > b;
+    case Compare::not_equal:
+      return a != b;
+    case Compare::greater_equal:
+      return !(a < b);
+    case Compare::always:
+      return a == a;
   }
   return a == a;
 }
 
 enum class CoarseResult { killed, accepted, ambiguous };
 
-/// The coarse test: bounds of the triangle over the tile against the tile's bounds. The evaluation in the fine test
-/// rounds each of its five operations, so bounds are widened by 2^-20 of the largest term before they are used.
+/// The coarse test: bounds of the triangle over the tile against the tile's bounds. The evaluation in the
+/// fine test rounds each of its five operations, so bounds are widened by 2^-20 of the largest term before
+/// they are used.
 inline CoarseResult coarse_test(const RasterTriangle& t, int x, int y, float scale, Compare compare,
                                 std::uint32_t tile_min, std::uint32_t tile_max) {
   if (compare == Compare::always) return CoarseResult::accepted;
@@ -53,24 +63,29 @@ inline CoarseResult coarse_test(const RasterTriangle& t, int x, int y, float sca
   const float across = t.z.ddx * 8.0f, down = t.z.ddy * 8.0f;
   const float corner = t.z.base + t.z.ddx * left + t.z.ddy * top;
   const float slack = (std::fabs(t.z.base) + std::fabs(t.z.ddx) * (std::fabs(left) + 8.0f) +
-                       std::fabs(t.z.ddy) * (std::fabs(top) + 8.0f)) * 0x1p-20f;
+                       std::fabs(t.z.ddy) * (std::fabs(top) + 8.0f)) *
+                      0x1p-20f;
   const float low = corner + std::min(across, 0.0f) + std::min(down, 0.0f) - slack;
   const float high = corner + std::max(across, 0.0f) + std::max(down, 0.0f) + slack;
   const auto clamp01 = [](float v) HWY_ATTR { return v > 0.0f ? (v < 1.0f ? v : 1.0f) : 0.0f; };
   const std::uint32_t nearest = depth_bits(clamp01(low), scale), farthest = depth_bits(clamp01(high), scale);
   switch (compare) {
     case Compare::less:
-      return nearest >= tile_max ? CoarseResult::killed
-                                 : farthest < tile_min ? CoarseResult::accepted : CoarseResult::ambiguous;
+      return nearest >= tile_max   ? CoarseResult::killed
+             : farthest < tile_min ? CoarseResult::accepted
+                                   : CoarseResult::ambiguous;
     case Compare::less_equal:
-      return nearest > tile_max ? CoarseResult::killed
-                                : farthest <= tile_min ? CoarseResult::accepted : CoarseResult::ambiguous;
+      return nearest > tile_max     ? CoarseResult::killed
+             : farthest <= tile_min ? CoarseResult::accepted
+                                    : CoarseResult::ambiguous;
     case Compare::greater:
       return farthest <= tile_min ? CoarseResult::killed
-                                  : nearest > tile_max ? CoarseResult::accepted : CoarseResult::ambiguous;
+             : nearest > tile_max ? CoarseResult::accepted
+                                  : CoarseResult::ambiguous;
     case Compare::greater_equal:
-      return farthest < tile_min ? CoarseResult::killed
-                                 : nearest >= tile_max ? CoarseResult::accepted : CoarseResult::ambiguous;
+      return farthest < tile_min   ? CoarseResult::killed
+             : nearest >= tile_max ? CoarseResult::accepted
+                                   : CoarseResult::ambiguous;
     default:  // equal
       return nearest > tile_max || farthest < tile_min ? CoarseResult::killed : CoarseResult::ambiguous;
   }
@@ -106,8 +121,8 @@ void fine_test_of(const RasterTriangle& t, int x, int y, std::span<const SampleP
         }
         continue;
       }
-      const LaneI z = depth_at(t.z, load(kLaneOffsets.fx + first) + sample_x, load(kLaneOffsets.fy + first) + sample_y,
-                               tile.scale);
+      const LaneI z = depth_at(t.z, load(kLaneOffsets.fx + first) + sample_x,
+                               load(kLaneOffsets.fy + first) + sample_y, tile.scale);
       const LaneM pass = mask_from_bits(covered, first) & compare_depth(kCompare, z, old);
       put_mask(pass, v, passed);
       if constexpr (kWrite) {
@@ -127,20 +142,30 @@ void fine_test_of(const RasterTriangle& t, int x, int y, std::span<const SampleP
 
 template <bool kWrite>
 void fine_test_dispatch(Compare compare, const RasterTriangle& t, int x, int y,
-                        std::span<const SamplePosition> positions, const TileDepth& tile, SampleMasks& masks) {
+                        std::span<const SamplePosition> positions, const TileDepth& tile,
+                        SampleMasks& masks) {
   switch (compare) {
-    case Compare::less: return fine_test_of<Compare::less, kWrite>(t, x, y, positions, tile, masks);
-    case Compare::equal: return fine_test_of<Compare::equal, kWrite>(t, x, y, positions, tile, masks);
-    case Compare::less_equal: return fine_test_of<Compare::less_equal, kWrite>(t, x, y, positions, tile, masks);
-    case Compare::greater: return fine_test_of<Compare::greater, kWrite>(t, x, y, positions, tile, masks);
-    case Compare::greater_equal: return fine_test_of<Compare::greater_equal, kWrite>(t, x, y, positions, tile, masks);
-    case Compare::not_equal: return fine_test_of<Compare::not_equal, kWrite>(t, x, y, positions, tile, masks);
-    case Compare::always: return fine_test_of<Compare::always, kWrite>(t, x, y, positions, tile, masks);
-    case Compare::never: return fine_test_of<Compare::never, kWrite>(t, x, y, positions, tile, masks);
+    case Compare::less:
+      return fine_test_of<Compare::less, kWrite>(t, x, y, positions, tile, masks);
+    case Compare::equal:
+      return fine_test_of<Compare::equal, kWrite>(t, x, y, positions, tile, masks);
+    case Compare::less_equal:
+      return fine_test_of<Compare::less_equal, kWrite>(t, x, y, positions, tile, masks);
+    case Compare::greater:
+      return fine_test_of<Compare::greater, kWrite>(t, x, y, positions, tile, masks);
+    case Compare::greater_equal:
+      return fine_test_of<Compare::greater_equal, kWrite>(t, x, y, positions, tile, masks);
+    case Compare::not_equal:
+      return fine_test_of<Compare::not_equal, kWrite>(t, x, y, positions, tile, masks);
+    case Compare::always:
+      return fine_test_of<Compare::always, kWrite>(t, x, y, positions, tile, masks);
+    case Compare::never:
+      return fine_test_of<Compare::never, kWrite>(t, x, y, positions, tile, masks);
   }
 }
 
-/// The fine test of all covered samples: clears the bits of samples that fail, writes the others' depth if asked to.
+/// The fine test of all covered samples: clears the bits of samples that fail, writes the others' depth if
+/// asked to.
 inline void fine_test(Compare compare, bool write, const RasterTriangle& t, int x, int y,
                       std::span<const SamplePosition> positions, const TileDepth& tile, SampleMasks& masks) {
   if (write) return fine_test_dispatch<true>(compare, t, x, y, positions, tile, masks);

@@ -25,8 +25,10 @@ BlockLanes sum_trips(const std::array<std::int32_t, kBatchLanes>& trips, std::ui
         highest = std::max(highest, most[static_cast<std::size_t>(group)]);
       const std::uint64_t in_subgroup =
           width == 64 ? valid_lanes : valid_lanes >> first & ((std::uint64_t{1} << width) - 1);
-      // A subgroup that the batch does not fill is charged for its share: the hardware fills it with other quads.
-      sum.issued[w] += static_cast<std::uint64_t>(highest) * static_cast<std::uint64_t>(__builtin_popcountll(in_subgroup));
+      // A subgroup that the batch does not fill is charged for its share: the hardware fills it with other
+      // quads.
+      sum.issued[w] +=
+          static_cast<std::uint64_t>(highest) * static_cast<std::uint64_t>(__builtin_popcountll(in_subgroup));
     }
   }
   return sum;
@@ -68,12 +70,13 @@ void account_blocks(const BlockTrips& blocks, const BlockOps& ops, int block_cou
   charge(ops[0], all, counters);
   for (int block = 1; block < block_count; ++block) {
     if ((blocks.used >> block & 1u) == 0) continue;
-    charge(ops[static_cast<std::size_t>(block)], sum_trips(blocks.trips[static_cast<std::size_t>(block)], valid_lanes),
-           counters);
+    charge(ops[static_cast<std::size_t>(block)],
+           sum_trips(blocks.trips[static_cast<std::size_t>(block)], valid_lanes), counters);
   }
 }
 
-void account_shading(const FragmentBatch& batch, const FragmentProgram& program, bool sample_rate, PassCounters& c) {
+void account_shading(const FragmentBatch& batch, const FragmentProgram& program, bool sample_rate,
+                     PassCounters& c) {
   const auto lanes = static_cast<std::uint64_t>(__builtin_popcountll(batch.valid_lanes));
   const auto active = static_cast<std::uint64_t>(__builtin_popcountll(batch.active_lanes));
   c.stats.fragment_shader_invocations += lanes;

@@ -17,7 +17,8 @@ class BinColor : protected BinDepth {
  protected:
   using BinDepth::BinDepth;
 
-  void write_tile(const FragmentBatch& batch, int block, const std::uint64_t* masks, int first_sample, int last_sample) {
+  void write_tile(const FragmentBatch& batch, int block, const std::uint64_t* masks, int first_sample,
+                  int last_sample) {
     for (std::size_t target = 0; target < c_.color.size(); ++target) {
       const BlendState state = target < w_.state->blend.size() ? w_.state->blend[target] : BlendState{};
       if (state.write_mask == 0) continue;
@@ -41,8 +42,8 @@ class BinColor : protected BinDepth {
     }
   }
 
-  void count_color(GpuImage& image, int block, std::uint64_t fragments, std::uint64_t single_color, std::uint64_t written,
-                   bool reads) {
+  void count_color(GpuImage& image, int block, std::uint64_t fragments, std::uint64_t single_color,
+                   std::uint64_t written, bool reads) {
     PassCounters& n = w_.counters();
     touch_tile(image, block, w_.current_chunk, n.crop);
     const auto bytes = static_cast<std::uint64_t>(info(image.format).bytes);
@@ -80,17 +81,19 @@ class BinColor : protected BinDepth {
     return w_.samples[of_sample_batch ? static_cast<std::size_t>(w_.sample_quad[q]) : q].masks[s];
   }
 
-  void write_sample(GpuImage& image, const WriteTargets& to, bool of_sample_batch, int s, const EncodedBatch& texels) {
+  void write_sample(GpuImage& image, const WriteTargets& to, bool of_sample_batch, int s,
+                    const EncodedBatch& texels) {
     for (int q = 0; q < to.count; ++q) {
       const std::uint8_t mask = sample_mask(q, of_sample_batch, s);
       if (mask == 0) continue;
       for (int word = 0; word < image.words; ++word)
-        store_quad(texels.words[word] + 4 * q, mask, quad_texels(image, to.block[q], to.quad_in_block[q], s, word));
+        store_quad(texels.words[word] + 4 * q, mask,
+                   quad_texels(image, to.block[q], to.quad_in_block[q], s, word));
     }
   }
 
-  void count_quads(GpuImage& image, const WriteTargets& to, bool of_sample_batch, int first_sample, int last_sample,
-                   bool reads) {
+  void count_quads(GpuImage& image, const WriteTargets& to, bool of_sample_batch, int first_sample,
+                   int last_sample, bool reads) {
     for (int q = 0; q < to.count; ++q) {
       std::uint64_t written = 0;
       std::uint8_t lanes = 0, all = 15;

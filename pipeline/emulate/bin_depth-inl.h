@@ -16,18 +16,19 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
-/// Depth and stencil of one bin. BinDepth, BinColor, BinShading and BinRunner are the stages of one loop over a bin's
-/// triangles: each adds its stage to what the one before it offers.
+/// Depth and stencil of one bin. BinDepth, BinColor, BinShading and BinRunner are the stages of one loop over
+/// a bin's triangles: each adds its stage to what the one before it offers.
 class BinDepth {
  protected:
-  BinDepth(const PassContext& context, BinWorker& worker) : c_(context), w_(worker), samples_(context.samples) {}
+  BinDepth(const PassContext& context, BinWorker& worker)
+      : c_(context), w_(worker), samples_(context.samples) {}
 
   CoarseResult test_coarse(const RasterTriangle& t, int x, int y, PassCounters& n) const {
     if (c_.depth == nullptr || !w_.state->depth.test) return CoarseResult::ambiguous;
     const auto block = static_cast<std::size_t>(c_.depth->block_index(x, y));
     n.hiz.tested_tiles += 1;
-    CoarseResult result = coarse_test(t, x, y, c_.depth_scale, w_.state->depth.compare, c_.depth->depth_min[block],
-                                      c_.depth->depth_max[block]);
+    CoarseResult result = coarse_test(t, x, y, c_.depth_scale, w_.state->depth.compare,
+                                      c_.depth->depth_min[block], c_.depth->depth_max[block]);
     if (result == CoarseResult::killed && failing_samples_matter()) result = CoarseResult::ambiguous;
     n.hiz.killed_tiles += result == CoarseResult::killed ? 1 : 0;
     n.hiz.accepted_tiles += result == CoarseResult::accepted ? 1 : 0;
@@ -35,11 +36,12 @@ class BinDepth {
     return result;
   }
 
-  /// Samples that fail may still change the stencil, by either test; and a shader that writes storage runs before the
-  /// test unless early tests are forced.
+  /// Samples that fail may still change the stencil, by either test; and a shader that writes storage runs
+  /// before the test unless early tests are forced.
   bool failing_samples_matter() const {
     const StencilState& stencil = w_.state->stencil;
-    const bool changes_stencil = stencil.test && (stencil.on_depth_fail != StencilOp::keep || stencil.on_fail != StencilOp::keep);
+    const bool changes_stencil =
+        stencil.test && (stencil.on_depth_fail != StencilOp::keep || stencil.on_fail != StencilOp::keep);
     return changes_stencil || (w_.late_z && w_.program->writes_storage);
   }
 
@@ -55,7 +57,8 @@ class BinDepth {
     }
   }
 
-  void test_tile(const RasterTriangle* t, int x, int y, CoarseResult coarse, SampleMasks& masks, PassCounters& n) {
+  void test_tile(const RasterTriangle* t, int x, int y, CoarseResult coarse, SampleMasks& masks,
+                 PassCounters& n) {
     const PipelineState& state = *w_.state;
     const int block = c_.depth->block_index(x, y);
     c_.depth->use(block);
@@ -80,7 +83,9 @@ class BinDepth {
       update_stencil(state.stencil, samples_, c_.depth->stencil_block(block), before_depth, masks.lanes);
   }
 
-  static std::uint64_t popcount(std::uint64_t bits) { return static_cast<std::uint64_t>(__builtin_popcountll(bits)); }
+  static std::uint64_t popcount(std::uint64_t bits) {
+    return static_cast<std::uint64_t>(__builtin_popcountll(bits));
+  }
 
   void test_tile_late(const RasterTriangle* t, int x, int y, SampleMasks& masks) {
     const std::uint64_t tested = masks.count;
@@ -97,7 +102,8 @@ class BinDepth {
     refresh_bounds();
   }
 
-  // In submission order, a quad at a time: two quads of a batch never lie on the same pixels (see append_tile).
+  // In submission order, a quad at a time: two quads of a batch never lie on the same pixels (see
+  // append_tile).
   void test_late_sample(int s) {
     const D4 d;
     const PipelineState& state = *w_.state;
@@ -109,10 +115,14 @@ class BinDepth {
       if (mask == 0) continue;
       tested += popcount(mask);
       HWY_ALIGN float values[4] = {};
-      if (const RasterTriangle* t = w_.batch.triangle[q]; t != nullptr) {  // null in full-screen passes: stencil only
-        const float x0 = static_cast<float>(w_.batch.quad_x[q] - t->reference_x) + 0.5f + static_cast<float>(p.x) * 0.0625f;
-        const float y0 = static_cast<float>(w_.batch.quad_y[q] - t->reference_y) + 0.5f + static_cast<float>(p.y) * 0.0625f;
-        const auto x = hn::Add(hn::Load(d, kQuadX), hn::Set(d, x0)), y = hn::Add(hn::Load(d, kQuadY), hn::Set(d, y0));
+      if (const RasterTriangle* t = w_.batch.triangle[q];
+          t != nullptr) {  // null in full-screen passes: stencil only
+        const float x0 = static_cast<float>(w_.batch.quad_x[q] - t->reference_x) + 0.5f +
+                         static_cast<float>(p.x) * 0.0625f;
+        const float y0 = static_cast<float>(w_.batch.quad_y[q] - t->reference_y) + 0.5f +
+                         static_cast<float>(p.y) * 0.0625f;
+        const auto x = hn::Add(hn::Load(d, kQuadX), hn::Set(d, x0)),
+                   y = hn::Add(hn::Load(d, kQuadY), hn::Set(d, y0));
         hn::Store(plane_at(t->z, x, y), d, values);
       }
       c_.depth->use(w_.block[q]);
@@ -125,7 +135,8 @@ class BinDepth {
     count_depth_traffic(tested, passed, n);
   }
 
-  std::uint8_t test_quad(const PipelineState& state, std::size_t q, int s, const float* values, std::uint8_t mask) {
+  std::uint8_t test_quad(const PipelineState& state, std::size_t q, int s, const float* values,
+                         std::uint8_t mask) {
     const int first = s * kBlockLanes + 4 * w_.quad_in_block[q];
     std::uint32_t* stored = c_.depth->block(w_.block[q]) + first;
     std::uint8_t* stencil = state.stencil.test ? c_.depth->stencil_block(w_.block[q]) + first : nullptr;
@@ -151,14 +162,22 @@ class BinDepth {
 
   static bool depth_passes(Compare compare, std::uint32_t z, std::uint32_t stored) {
     switch (compare) {
-      case Compare::never: return false;
-      case Compare::less: return z < stored;
-      case Compare::equal: return z == stored;
-      case Compare::less_equal: return z <= stored;
-      case Compare::greater: return z > stored;
-      case Compare::not_equal: return z != stored;
-      case Compare::greater_equal: return z >= stored;
-      case Compare::always: return true;
+      case Compare::never:
+        return false;
+      case Compare::less:
+        return z < stored;
+      case Compare::equal:
+        return z == stored;
+      case Compare::less_equal:
+        return z <= stored;
+      case Compare::greater:
+        return z > stored;
+      case Compare::not_equal:
+        return z != stored;
+      case Compare::greater_equal:
+        return z >= stored;
+      case Compare::always:
+        return true;
     }
     return true;
   }

@@ -21,7 +21,8 @@ inline constexpr SamplePosition kPixelCenter{};
 class BinRunner : private BinShading {
  public:
   BinRunner(const PassContext& context, int bin, BinWorker& worker)
-      : BinShading(context, worker), bin_x_(bin % context.bins_x * kBinPx),
+      : BinShading(context, worker),
+        bin_x_(bin % context.bins_x * kBinPx),
         bin_y_(bin / context.bins_x * kBinPx) {
     w_.texture_tracker.reset();
     w_.batch.quad_count = 0;
@@ -54,7 +55,8 @@ class BinRunner : private BinShading {
  private:
   void start_draw(const DrawInfo& draw) {
     if (w_.draw == &draw) return;
-    const bool same_batch = w_.draw != nullptr && w_.draw->batch == draw.batch && w_.draw->material == draw.material;
+    const bool same_batch =
+        w_.draw != nullptr && w_.draw->batch == draw.batch && w_.draw->material == draw.material;
     if (!same_batch) {
       flush();
       w_.state = &draw.batch->state;
@@ -99,7 +101,8 @@ class BinRunner : private BinShading {
     }
   }
 
-  bool cover(const RasterTriangle& t, TileCoverage& coverage, int x, int y, SampleMasks& masks, PassCounters& n) {
+  bool cover(const RasterTriangle& t, TileCoverage& coverage, int x, int y, SampleMasks& masks,
+             PassCounters& n) {
     if (coverage.covers_whole_tile()) {
       masks.start();
       for (int s = 0; s < samples_; ++s) masks.set(static_cast<std::size_t>(s), ~std::uint64_t{0});
@@ -113,12 +116,15 @@ class BinRunner : private BinShading {
     // Grown edges meet far beyond a sharp corner: the bounds end it.
     if (w_.state->raster.conservative)
       masks.keep(lanes_within(t.min_x - x, t.min_y - y, t.max_x - x, t.max_y - y), 0, samples_, samples_);
-    if (x + kBlockPx > c_.width || y + kBlockPx > c_.height) masks.keep(lanes_inside(x, y), 0, samples_, samples_);
+    if (x + kBlockPx > c_.width || y + kBlockPx > c_.height)
+      masks.keep(lanes_inside(x, y), 0, samples_, samples_);
     n.raster.covered_samples += masks.count;
     return masks.count != 0;
   }
 
-  std::uint64_t lanes_inside(int x, int y) const { return lanes_within(0, 0, c_.width - 1 - x, c_.height - 1 - y); }
+  std::uint64_t lanes_inside(int x, int y) const {
+    return lanes_within(0, 0, c_.width - 1 - x, c_.height - 1 - y);
+  }
 
   /// Lanes of a tile in a rectangle of its pixels, both ends included.
   static std::uint64_t lanes_within(int left, int top, int right, int bottom) {
@@ -130,7 +136,8 @@ class BinRunner : private BinShading {
   }
 
   /// Stencil and depth before shading; false when no sample is left.
-  bool test_early(const RasterTriangle& t, int x, int y, CoarseResult coarse, SampleMasks& masks, PassCounters& n) {
+  bool test_early(const RasterTriangle& t, int x, int y, CoarseResult coarse, SampleMasks& masks,
+                  PassCounters& n) {
     const PipelineState& state = *w_.state;
     if (c_.depth == nullptr || !(state.depth.test || state.stencil.test || state.depth.write)) {
       n.stats.samples_passed += masks.count;

@@ -11,7 +11,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
-/// From this many quads of one triangle on, a tile is shaded in place; fewer are gathered with those of other tiles.
+/// From this many quads of one triangle on, a tile is shaded in place; fewer are gathered with those of other
+/// tiles.
 inline constexpr int kTileQuads = 3;
 
 /// Fragments of one bin: tiles shaded in place, and quads gathered into batches.
@@ -26,10 +27,10 @@ class BinShading : protected BinColor {
 
   static int quads_of(std::uint64_t lanes) { return __builtin_popcountll(quad_lanes(lanes)) / 4; }
 
-  /// Shades and writes one triangle's part of a tile at once: every register holds neighboring quads of one triangle,
-  /// and texels are stored a register at a time.
-  void shade_tile(const RasterTriangle* t, const Segment* segment, const GeometryItem* item, int x, int y, int block,
-                  const SampleMasks& masks, PassCounters& n) {
+  /// Shades and writes one triangle's part of a tile at once: every register holds neighboring quads of one
+  /// triangle, and texels are stored a register at a time.
+  void shade_tile(const RasterTriangle* t, const Segment* segment, const GeometryItem* item, int x, int y,
+                  int block, const SampleMasks& masks, PassCounters& n) {
     const std::uint64_t quads = quad_lanes(masks.any_lane);
     n.raster.quads += static_cast<std::uint64_t>(quads_of(quads));
     n.raster.partial_quads += static_cast<std::uint64_t>(quads_of(quads & ~masks.any_lane));
@@ -47,7 +48,8 @@ class BinShading : protected BinColor {
     batch.sample_index = -1;
     batch.active_lanes = masks.any_lane;
     batch.valid_lanes = quads;
-    set_up_tile(batch, x, y, centroid ? AttributeLocation::centroid : AttributeLocation::center, c_.positions, 0);
+    set_up_tile(batch, x, y, centroid ? AttributeLocation::centroid : AttributeLocation::center, c_.positions,
+                0);
     shade(batch, false);
     add_tile_heat(batch, x, y);
     if (batch.discarded_lanes == 0 && !w_.late_z) return write_tile(batch, block, masks.lanes, 0, samples_);
@@ -69,8 +71,8 @@ class BinShading : protected BinColor {
     write_tile(batch, block, kept.lanes, s, s + 1);
   }
 
-  void start_tile(FragmentBatch& batch, const RasterTriangle* t, const Segment* segment, const GeometryItem* item, int x,
-                  int y) {
+  void start_tile(FragmentBatch& batch, const RasterTriangle* t, const Segment* segment,
+                  const GeometryItem* item, int x, int y) {
     batch.material = w_.batch.material;
     batch.resources = w_.batch.resources;
     batch.texture_tracker = w_.batch.texture_tracker;
@@ -84,14 +86,16 @@ class BinShading : protected BinColor {
     batch.primitive.fill(t->primitive);
     batch.front_facing.fill(t->front_facing != w_.draw->mirrored);
     const auto stride = static_cast<std::uint32_t>(w_.draw->batch->vertex->varying_scalars);
-    for (std::size_t v = 0; v < 3; ++v) batch.varyings[v].fill(varyings_of(t->vertex[v], stride, *segment, *item));
+    for (std::size_t v = 0; v < 3; ++v)
+      batch.varyings[v].fill(varyings_of(t->vertex[v], stride, *segment, *item));
   }
 
   void set_lane_coverage(FragmentBatch& batch, const std::uint64_t* masks) const {
     for (int first = 0; first < kBlockLanes; first += kVectorLanes) {
       LaneI bits(0);
       for (int s = 0; s < samples_; ++s)
-        bits = bits | select(mask_from_bits(masks[s], first), LaneI(static_cast<std::int32_t>(1u << s)), LaneI(0));
+        bits = bits |
+               select(mask_from_bits(masks[s], first), LaneI(static_cast<std::int32_t>(1u << s)), LaneI(0));
       store(bits, reinterpret_cast<std::int32_t*>(batch.coverage.data()) + first);
     }
   }
@@ -109,7 +113,9 @@ class BinShading : protected BinColor {
   }
 
   /// The number of the tile in targets of the pass's size.
-  int tile_number(int x, int y) const { return (y / kBlockPx) * ((c_.width + kBlockPx - 1) / kBlockPx) + x / kBlockPx; }
+  int tile_number(int x, int y) const {
+    return (y / kBlockPx) * ((c_.width + kBlockPx - 1) / kBlockPx) + x / kBlockPx;
+  }
 
   void append_tile(const RasterTriangle* t, const Segment* segment, const GeometryItem* item, int x, int y,
                    const SampleMasks& masks, PassCounters& n) {
@@ -132,8 +138,8 @@ class BinShading : protected BinColor {
     }
   }
 
-  void append_quad(const RasterTriangle* t, const Segment* segment, const GeometryItem* item, int x, int y, int block,
-                   int quad, const std::uint64_t* masks) {
+  void append_quad(const RasterTriangle* t, const Segment* segment, const GeometryItem* item, int x, int y,
+                   int block, int quad, const std::uint64_t* masks) {
     FragmentBatch& batch = w_.batch;
     const auto q = static_cast<std::size_t>(batch.quad_count++);
     batch.quad_x[q] = x + lane_x(4 * quad);
@@ -141,18 +147,22 @@ class BinShading : protected BinColor {
     batch.triangle[q] = t;
     w_.block[q] = block;
     w_.quad_in_block[q] = quad;
-    for (int s = 0; s < samples_; ++s) w_.samples[q].masks[s] = static_cast<std::uint8_t>(masks[s] >> (4 * quad) & 15);
+    for (int s = 0; s < samples_; ++s)
+      w_.samples[q].masks[s] = static_cast<std::uint8_t>(masks[s] >> (4 * quad) & 15);
     if (t == nullptr) return;
     batch.primitive[q] = t->primitive;
     batch.front_facing[q] = t->front_facing != w_.draw->mirrored;
     const auto stride = static_cast<std::uint32_t>(w_.draw->batch->vertex->varying_scalars);
-    for (std::size_t v = 0; v < 3; ++v) batch.varyings[v][q] = varyings_of(t->vertex[v], stride, *segment, *item);
+    for (std::size_t v = 0; v < 3; ++v)
+      batch.varyings[v][q] = varyings_of(t->vertex[v], stride, *segment, *item);
   }
 
   static const float* varyings_of(std::uint32_t vertex, std::uint32_t stride, const Segment& segment,
                                   const GeometryItem& item) {
-    if ((vertex & kClippedVertexBit) != 0) return item.clipped_varyings.data() + (vertex & ~kClippedVertexBit) * stride;
-    return segment.varyings.data() + segment.varying_base[item.draw - segment.first_draw] + std::size_t{vertex} * stride;
+    if ((vertex & kClippedVertexBit) != 0)
+      return item.clipped_varyings.data() + (vertex & ~kClippedVertexBit) * stride;
+    return segment.varyings.data() + segment.varying_base[item.draw - segment.first_draw] +
+           std::size_t{vertex} * stride;
   }
 
   void flush() {
@@ -217,14 +227,16 @@ class BinShading : protected BinColor {
     part.resources = batch.resources;
     part.texture_tracker = batch.texture_tracker;
     part.sample_index = s;
-    for (int q = 0; q < part.quad_count; ++q) set_up_quad(part, q, AttributeLocation::sample, c_.positions, s);
+    for (int q = 0; q < part.quad_count; ++q)
+      set_up_quad(part, q, AttributeLocation::sample, c_.positions, s);
     shade(part, true);
     add_heat(part);
     drop_discarded_sample(part, s);
     write_color(part, block, quad_in_block, s, s + 1);
   }
 
-  static void copy_quad(const FragmentBatch& from_batch, std::size_t from, FragmentBatch& to_batch, std::size_t to) {
+  static void copy_quad(const FragmentBatch& from_batch, std::size_t from, FragmentBatch& to_batch,
+                        std::size_t to) {
     to_batch.quad_x[to] = from_batch.quad_x[from];
     to_batch.quad_y[to] = from_batch.quad_y[from];
     to_batch.triangle[to] = from_batch.triangle[from];
@@ -255,7 +267,8 @@ class BinShading : protected BinColor {
   void add_tile_heat(const FragmentBatch& batch, int x, int y) const {
     if (c_.heat == nullptr || c_.heat_shift != 0) return add_heat(batch);
     const std::uint64_t active = batch.active_lanes;
-    auto* heat = reinterpret_cast<std::int32_t*>(c_.heat) + ((y >> 3) * c_.heat_blocks_x + (x >> 3)) * kBlockLanes;
+    auto* heat =
+        reinterpret_cast<std::int32_t*>(c_.heat) + ((y >> 3) * c_.heat_blocks_x + (x >> 3)) * kBlockLanes;
     for (int first = 0; first < kBlockLanes; first += kVectorLanes)
       store(load(heat + first) + select(mask_from_bits(active, first), LaneI(1), LaneI(0)), heat + first);
   }
@@ -285,7 +298,8 @@ class BinShading : protected BinColor {
     if (w_.late_z) test_late_sample(s);
   }
 
-  bool ordered_ = false;  ///< quads on the same pixels must not share a batch: blending and late tests read what they write
+  bool ordered_ = false;  ///< quads on the same pixels must not share a batch: blending and late tests read
+                          ///< what they write
 };
 
 }  // namespace hwsim::pipeline::HWY_NAMESPACE

@@ -1,7 +1,7 @@
 // Encoding, blending and writing of shaded batches. Per-target include guard.
+#include <cstring>
 #include "pipeline/emulate/fragment_setup-inl.h"
 #include "pipeline/emulate/pass_context.h"
-#include <cstring>
 
 #include "pipeline/shade/codec-inl.h"
 #include "pipeline/shade/lanes-inl.h"
@@ -25,7 +25,8 @@ HWY_INLINE Vec4<LaneF> batch_color(const float (&color)[4][kBatchLanes], int fir
   return {load(color[0] + first), load(color[1] + first), load(color[2] + first), load(color[3] + first)};
 }
 
-HWY_INLINE void encode_lanes(Format format, const Vec4<LaneF>& color, int words, int first, EncodedBatch& out) {
+HWY_INLINE void encode_lanes(Format format, const Vec4<LaneF>& color, int words, int first,
+                             EncodedBatch& out) {
   LaneI encoded[4];
   encode_texel<LaneF, LaneI>(format, color, encoded);
   for (int w = 0; w < words; ++w) store(encoded[w], out.words[w] + first);
@@ -34,28 +35,39 @@ HWY_INLINE void encode_lanes(Format format, const Vec4<LaneF>& color, int words,
 inline void encode_batch(Format format, const float (&color)[4][kBatchLanes], int words, std::uint64_t lanes,
                          EncodedBatch& out) {
   for (int first = 0; first < kBatchLanes; first += kVectorLanes)
-    if ((lanes >> first & kRegisterBits) != 0) encode_lanes(format, batch_color(color, first), words, first, out);
+    if ((lanes >> first & kRegisterBits) != 0)
+      encode_lanes(format, batch_color(color, first), words, first, out);
 }
 
 HWY_INLINE Vec4<LaneF> blend_factor(BlendFactor factor, const Vec4<LaneF>& src, const Vec4<LaneF>& dst) {
   const LaneF zero(0.0f), one(1.0f);
   const auto all = [](LaneF x) HWY_ATTR { return Vec4<LaneF>{x, x, x, x}; };
   switch (factor) {
-    case BlendFactor::zero: return all(zero);
-    case BlendFactor::one: return all(one);
-    case BlendFactor::src_alpha: return all(src.w);
-    case BlendFactor::one_minus_src_alpha: return all(one - src.w);
-    case BlendFactor::dst_alpha: return all(dst.w);
-    case BlendFactor::one_minus_dst_alpha: return all(one - dst.w);
-    case BlendFactor::src_color: return src;
-    case BlendFactor::dst_color: return dst;
+    case BlendFactor::zero:
+      return all(zero);
+    case BlendFactor::one:
+      return all(one);
+    case BlendFactor::src_alpha:
+      return all(src.w);
+    case BlendFactor::one_minus_src_alpha:
+      return all(one - src.w);
+    case BlendFactor::dst_alpha:
+      return all(dst.w);
+    case BlendFactor::one_minus_dst_alpha:
+      return all(one - dst.w);
+    case BlendFactor::src_color:
+      return src;
+    case BlendFactor::dst_color:
+      return dst;
   }
   return all(one);
 }
 
 HWY_INLINE Vec4<LaneF> blend(const BlendState& state, const Vec4<LaneF>& src, const Vec4<LaneF>& dst) {
-  const Vec4<LaneF> sf = blend_factor(state.src_color, src, dst), df = blend_factor(state.dst_color, src, dst);
-  const Vec4<LaneF> sa = blend_factor(state.src_alpha, src, dst), da = blend_factor(state.dst_alpha, src, dst);
+  const Vec4<LaneF> sf = blend_factor(state.src_color, src, dst),
+                    df = blend_factor(state.dst_color, src, dst);
+  const Vec4<LaneF> sa = blend_factor(state.src_alpha, src, dst),
+                    da = blend_factor(state.dst_alpha, src, dst);
   return {src.x * sf.x + dst.x * df.x, src.y * sf.y + dst.y * df.y, src.z * sf.z + dst.z * df.z,
           src.w * sa.w + dst.w * da.w};
 }
@@ -85,13 +97,15 @@ HWY_INLINE void store_quad(const std::int32_t* from, std::uint32_t mask, std::ui
 }
 
 /// Writes a tile's texels of one sample where `mask` says so.
-inline void store_tile(GpuImage& image, int block, int sample, std::uint64_t mask, const EncodedBatch& texels) {
+inline void store_tile(GpuImage& image, int block, int sample, std::uint64_t mask,
+                       const EncodedBatch& texels) {
   auto* base = reinterpret_cast<std::int32_t*>(image.block(block)) + sample * image.words * kBlockLanes;
   for (int w = 0; w < image.words; ++w) {
     std::int32_t* to = base + w * kBlockLanes;
     for (int first = 0; first < kBlockLanes; first += kVectorLanes)
-      if ((mask >> first & kRegisterBits) != 0) hn::BlendedStore(load(texels.words[w] + first).v, hn::RebindMask(DI(), mask_from_bits(mask, first).v), DI(),
-                       to + first);
+      if ((mask >> first & kRegisterBits) != 0)
+        hn::BlendedStore(load(texels.words[w] + first).v, hn::RebindMask(DI(), mask_from_bits(mask, first).v),
+                         DI(), to + first);
   }
 }
 
@@ -108,8 +122,8 @@ inline void gather_target(GpuImage& image, const WriteTargets& to, int sample, E
 }
 
 /// Texels `out.words` hold the target's values: replaced by the blended ones.
-inline void blend_lanes(const GpuImage& image, const BlendState& state, const float (&color)[4][kBatchLanes], int lanes,
-                        EncodedBatch& out) {
+inline void blend_lanes(const GpuImage& image, const BlendState& state, const float (&color)[4][kBatchLanes],
+                        int lanes, EncodedBatch& out) {
   for (int first = 0; first < lanes; first += kVectorLanes) {
     LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
     for (int w = 0; w < image.words; ++w) words[w] = load(out.words[w] + first);
@@ -125,10 +139,12 @@ inline void blend_lanes(const GpuImage& image, const BlendState& state, const fl
 }
 
 /// The same for a tile in place.
-inline void blend_tile(GpuImage& image, const BlendState& state, const float (&color)[4][kBatchLanes], int block,
-                       int sample, EncodedBatch& out) {
-  const auto* from = reinterpret_cast<const std::int32_t*>(image.block(block)) + sample * image.words * kBlockLanes;
-  for (int w = 0; w < image.words; ++w) std::memcpy(out.words[w], from + w * kBlockLanes, sizeof(out.words[w]));
+inline void blend_tile(GpuImage& image, const BlendState& state, const float (&color)[4][kBatchLanes],
+                       int block, int sample, EncodedBatch& out) {
+  const auto* from =
+      reinterpret_cast<const std::int32_t*>(image.block(block)) + sample * image.words * kBlockLanes;
+  for (int w = 0; w < image.words; ++w)
+    std::memcpy(out.words[w], from + w * kBlockLanes, sizeof(out.words[w]));
   blend_lanes(image, state, color, kBatchLanes, out);
 }
 

@@ -16,7 +16,8 @@
 namespace hwsim::pipeline {
 namespace {
 
-constexpr std::uint64_t kSegmentTriangles = 262144;  // bounds memory: about 150 bytes a triangle that is drawn
+constexpr std::uint64_t kSegmentTriangles =
+    262144;  // bounds memory: about 150 bytes a triangle that is drawn
 constexpr std::uint64_t kFullScreenBands = 64;
 
 /// Runs the passes of one compiled graph in order. Images live from their first pass to their last.
@@ -24,9 +25,16 @@ class FrameRunner {
  public:
   FrameRunner(const FrameGraph& graph, const CompiledGraph& compiled, const FunctionalConfig& functional,
               const EmulationOptions& options)
-      : graph_(graph), compiled_(compiled), functional_(functional), options_(options), textures_(graph.scene()),
-        materials_(graph.scene(), textures_), images_(graph.images().size()), buffers_(graph.buffers().size()),
-        cleared_(graph.images().size(), 0), workers_(static_cast<std::size_t>(std::max(1, options.jobs))),
+      : graph_(graph),
+        compiled_(compiled),
+        functional_(functional),
+        options_(options),
+        textures_(graph.scene()),
+        materials_(graph.scene(), textures_),
+        images_(graph.images().size()),
+        buffers_(graph.buffers().size()),
+        cleared_(graph.images().size(), 0),
+        workers_(static_cast<std::size_t>(std::max(1, options.jobs))),
         heat_blocks_x_((graph.width() + kBlockPx - 1) / kBlockPx) {
     const int heat_blocks_y = (graph.height() + kBlockPx - 1) / kBlockPx;
     heat_.resize(static_cast<std::size_t>(heat_blocks_x_ * heat_blocks_y) * kBlockLanes);
@@ -35,14 +43,17 @@ class FrameRunner {
   void run(Emulation& result) {
     for (std::size_t position = 0; position < compiled_.order.size(); ++position) {
       const Pass& pass = graph_.passes()[static_cast<std::size_t>(compiled_.order[position])];
-      if (options_.progress) options_.progress(static_cast<double>(position) / static_cast<double>(compiled_.order.size()), pass.name);
+      if (options_.progress)
+        options_.progress(static_cast<double>(position) / static_cast<double>(compiled_.order.size()),
+                          pass.name);
       allocate(static_cast<int>(position));
       PassWork work = describe(pass, compiled_.barrier_before[position] != 0);
       const auto start = std::chrono::steady_clock::now();
       const std::clock_t cpu_start = std::clock();
       run_pass(pass, work);
       result.pass_cpu_s.push_back(static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC);
-      result.pass_wall_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      result.pass_wall_s.push_back(
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
       result.trace.passes.push_back(std::move(work));
       release(static_cast<int>(position));
     }
@@ -50,7 +61,8 @@ class FrameRunner {
     result.color = read_output();
     result.shading_heat = read_heat();
     result.skipped["frustum"] = skipped_draws_;
-    for (const BinWorker& worker : workers_) result.skipped["accepted_tiles"] += worker.accepted_tiles_skipped;
+    for (const BinWorker& worker : workers_)
+      result.skipped["accepted_tiles"] += worker.accepted_tiles_skipped;
     result.skipped["passes"] = compiled_.culled.size();
   }
 
@@ -69,7 +81,8 @@ class FrameRunner {
 
   void release(int position) {
     for (std::size_t i = 0; i < images_.size(); ++i)
-      if (compiled_.images[i].last_pass == position && static_cast<int>(i) != graph_.output().index) images_[i].reset();
+      if (compiled_.images[i].last_pass == position && static_cast<int>(i) != graph_.output().index)
+        images_[i].reset();
     for (std::size_t i = 0; i < buffers_.size(); ++i)
       if (compiled_.buffers[i].last_pass == position) std::vector<std::uint32_t>().swap(buffers_[i]);
   }
@@ -95,22 +108,32 @@ class FrameRunner {
       for (const DrawBatch& batch : pass.batches)
         blended = blended || (i < batch.state.blend.size() && batch.state.blend[i].enabled);
       work.color_targets.push_back({desc.format, desc.samples, blended});
-      work.color_cleared_before = work.color_cleared_before && cleared_[static_cast<std::size_t>(written[i].index)] != 0;
+      work.color_cleared_before =
+          work.color_cleared_before && cleared_[static_cast<std::size_t>(written[i].index)] != 0;
     }
     work.sample_rate = pass.state.raster.sample_rate;
     for (const DrawBatch& batch : pass.batches) {
       work.sample_rate = work.sample_rate || batch.state.raster.sample_rate;
-      if (batch.vertex != nullptr) work.attribute_scalars = std::max(work.attribute_scalars, batch.vertex->varying_scalars);
+      if (batch.vertex != nullptr)
+        work.attribute_scalars = std::max(work.attribute_scalars, batch.vertex->varying_scalars);
     }
     return work;
   }
 
   void run_pass(const Pass& pass, PassWork& work) {
     switch (pass.kind) {
-      case PassKind::draw: run_draw(pass, work); break;
-      case PassKind::full_screen: run_full_screen(pass, work); break;
-      case PassKind::compute: run_compute(pass, work); break;
-      default: run_transfer(pass, work); break;
+      case PassKind::draw:
+        run_draw(pass, work);
+        break;
+      case PassKind::full_screen:
+        run_full_screen(pass, work);
+        break;
+      case PassKind::compute:
+        run_compute(pass, work);
+        break;
+      default:
+        run_transfer(pass, work);
+        break;
     }
     for (const ImageId id : pass.color) cleared_[static_cast<std::size_t>(id.index)] = 0;
     if (pass.depth && !pass.depth_read_only) cleared_[static_cast<std::size_t>(pass.depth.index)] = 0;
@@ -159,18 +182,18 @@ class FrameRunner {
     c.positions = standard_sample_positions(pass.samples);
     const PipelineState& state = pass.batches.empty() ? pass.state : pass.batches.front().state;
     if (!state.raster.sample_positions.empty()) c.positions = state.raster.sample_positions;
-    const auto [left, right] = std::minmax_element(c.positions.begin(), c.positions.end(),
-                                                   [](SamplePosition a, SamplePosition b) { return a.x < b.x; });
-    const auto [top, bottom] = std::minmax_element(c.positions.begin(), c.positions.end(),
-                                                   [](SamplePosition a, SamplePosition b) { return a.y < b.y; });
+    const auto [left, right] = std::minmax_element(
+        c.positions.begin(), c.positions.end(), [](SamplePosition a, SamplePosition b) { return a.x < b.x; });
+    const auto [top, bottom] = std::minmax_element(
+        c.positions.begin(), c.positions.end(), [](SamplePosition a, SamplePosition b) { return a.y < b.y; });
     c.sample_min_x = left->x;
     c.sample_max_x = right->x;
     c.sample_min_y = top->y;
     c.sample_max_y = bottom->y;
   }
 
-  // Shading at a multiple of the frame's size (supersampling) counts for the pixel that it ends in; other sizes
-  // (shadow maps) do not count.
+  // Shading at a multiple of the frame's size (supersampling) counts for the pixel that it ends in; other
+  // sizes (shadow maps) do not count.
   void set_heat(const Pass& pass, PassContext& c) {
     for (int shift = 0; shift < 5; ++shift) {
       if (pass.width != graph_.width() << shift || pass.height != graph_.height() << shift) continue;
@@ -241,43 +264,52 @@ class FrameRunner {
     start_workers(std::max<std::uint64_t>(1, (triangles + c.chunk_primitives - 1) / c.chunk_primitives), c);
     count_commands(pass, c, work.barrier_before, workers_.front().chunks);
     count_inputs(c, workers_.front().chunks, work);
-    const GeometryOptions geometry{options_.jobs, functional_.post_transform_cache_entries, options_.skip.frustum};
+    const GeometryOptions geometry{options_.jobs, functional_.post_transform_cache_entries,
+                                   options_.skip.frustum};
     std::uint32_t first = 0;
     while (first < c.draws.size()) {
       std::uint32_t last = first;
-      for (std::uint64_t n = 0; last < c.draws.size() && n < kSegmentTriangles; ++last) n += c.draws[last].primitive_count();
+      for (std::uint64_t n = 0; last < c.draws.size() && n < kSegmentTriangles; ++last)
+        n += c.draws[last].primitive_count();
       Segment segment = make_segment(c, first, last);
       skipped_draws_ += run_geometry(c, segment, geometry, workers_);
-      parallel_for(static_cast<std::size_t>(c.bins_x * c.bins_y), options_.jobs, [&](std::size_t bin, int worker) {
-        run_bin(c, segment, static_cast<int>(bin), workers_[static_cast<std::size_t>(worker)]);
-      });
+      parallel_for(static_cast<std::size_t>(c.bins_x * c.bins_y), options_.jobs,
+                   [&](std::size_t bin, int worker) {
+                     run_bin(c, segment, static_cast<int>(bin), workers_[static_cast<std::size_t>(worker)]);
+                   });
       first = last;
     }
     finish_workers(pass, work);
   }
 
   // A draw's commands count where its triangles do.
-  void count_commands(const Pass& pass, const PassContext& c, bool barrier, std::vector<PassCounters>& chunks) const {
+  void count_commands(const Pass& pass, const PassContext& c, bool barrier,
+                      std::vector<PassCounters>& chunks) const {
     for (const Command& command : record_pass(graph_, pass, barrier)) {
       const bool of_draw = pass.kind == PassKind::draw && command.draw < c.draws.size();
       const std::size_t chunk = of_draw ? c.draws[command.draw].first_primitive / c.chunk_primitives : 0;
       FrontEndCounters& n = chunks[std::min(chunk, chunks.size() - 1)].fe;
       n.command_words += command_words(command.kind);
-      const bool binds = command.kind == CommandKind::bind_pipeline || command.kind == CommandKind::bind_resources;
+      const bool binds =
+          command.kind == CommandKind::bind_pipeline || command.kind == CommandKind::bind_resources;
       n.state_changes += binds ? 1 : 0;
-      n.draws += command.kind >= CommandKind::draw ? 1 : 0;  // draws, dispatches and transfers: they start work
+      n.draws +=
+          command.kind >= CommandKind::draw ? 1 : 0;  // draws, dispatches and transfers: they start work
     }
   }
 
   static void count_inputs(const PassContext& c, std::vector<PassCounters>& chunks, PassWork& work) {
     std::set<const Mesh::Part*> parts;
     for (const DrawInfo& draw : c.draws) {
-      const std::size_t chunk = std::min<std::size_t>(draw.first_primitive / c.chunk_primitives, chunks.size() - 1);
+      const std::size_t chunk =
+          std::min<std::size_t>(draw.first_primitive / c.chunk_primitives, chunks.size() - 1);
       // Transforms and material, as a driver would bind them.
       chunks[chunk].mem.constant_read_bytes += 64 + 36 + sizeof(MaterialView);
       if (!parts.insert(draw.part).second) continue;
-      work.unique_index_bytes += std::uint64_t{draw.part->index_count} * static_cast<std::uint64_t>(std::max(2, draw.mesh->index_bytes));
-      work.unique_vertex_bytes += std::uint64_t{draw.vertex_count} * static_cast<std::uint64_t>(draw.mesh->vertex_bytes);
+      work.unique_index_bytes += std::uint64_t{draw.part->index_count} *
+                                 static_cast<std::uint64_t>(std::max(2, draw.mesh->index_bytes));
+      work.unique_vertex_bytes +=
+          std::uint64_t{draw.vertex_count} * static_cast<std::uint64_t>(draw.mesh->vertex_bytes);
     }
   }
 
@@ -304,7 +336,8 @@ class FrameRunner {
     start_workers(bands, c);
     count_commands(pass, c, work.barrier_before, workers_.front().chunks);
     std::vector<std::vector<std::uint32_t>> memory(
-        workers_.size(), std::vector<std::uint32_t>(static_cast<std::size_t>(pass.compute->group_memory_bytes) / 4 + 1));
+        workers_.size(),
+        std::vector<std::uint32_t>(static_cast<std::size_t>(pass.compute->group_memory_bytes) / 4 + 1));
     std::vector<std::unique_ptr<GroupBatch>> batches;
     for (std::size_t i = 0; i < workers_.size(); ++i) batches.push_back(std::make_unique<GroupBatch>());
     parallel_for(groups, options_.jobs, [&](std::size_t group, int worker) {
@@ -321,7 +354,8 @@ class FrameRunner {
       batch.group_memory = memory[w].data();
       batch.program = pass.compute;
       batch.counters = &workers_[w].chunks[group * bands / groups];
-      batch.counters->stats.compute_shader_invocations += static_cast<std::uint64_t>(batch.width * batch.height);
+      batch.counters->stats.compute_shader_invocations +=
+          static_cast<std::uint64_t>(batch.width * batch.height);
       pass.compute->run(batch, pass.uniforms.get());
     });
     finish_workers(pass, work);

@@ -11,9 +11,11 @@
 
 namespace hwsim::pipeline {
 
-/// Work that a scene does not need. Each switch changes neither image nor trace, only the emulator's own time.
+/// Work that a scene does not need. Each switch changes neither image nor trace, only the emulator's own
+/// time.
 struct SkipSwitches {
-  bool frustum = true;  ///< instances wholly outside the view volume are not transformed (their culling is still counted)
+  bool frustum = true;  ///< instances wholly outside the view volume are not transformed (their culling is
+                        ///< still counted)
   bool accepted_tiles = true;  ///< per-sample depth tests in tiles that the coarse test accepts whole
 };
 
@@ -25,8 +27,8 @@ struct EmulationOptions {
 
 struct Emulation {
   WorkTrace trace;
-  Image color;                 ///< the graph's output, linear
-  Image shading_heat;          ///< r: fragment shader invocations of each pixel, all passes
+  Image color;                                   ///< the graph's output, linear
+  Image shading_heat;                            ///< r: fragment shader invocations of each pixel, all passes
   std::map<std::string, std::uint64_t> skipped;  ///< by switch: how often it applied
   double wall_s = 0.0;
   std::vector<double> pass_wall_s;  ///< of the trace's passes, memory allocation left out

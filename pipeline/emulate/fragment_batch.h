@@ -22,7 +22,8 @@ inline constexpr int kMaxBufferSlots = 4;
 struct MaterialView {
   float base_color[4] = {1, 1, 1, 1};
   float emissive[3] = {0, 0, 0};
-  float metallic = 1.0f, roughness = 1.0f, normal_scale = 1.0f, occlusion_strength = 1.0f, alpha_cutoff = 0.5f;
+  float metallic = 1.0f, roughness = 1.0f, normal_scale = 1.0f, occlusion_strength = 1.0f,
+        alpha_cutoff = 0.5f;
   bool alpha_test = false;
   bool double_sided = false;
   bool has_colors = false;  ///< a mesh that uses it has vertex colors
@@ -45,7 +46,8 @@ struct ResourceView {
 /// How often each lane went through each block of a shader (a loop's body: once for each iteration).
 struct BlockTrips {
   alignas(64) std::array<std::array<std::int32_t, kBatchLanes>, kMaxBlocks> trips;
-  std::uint32_t used = 0;  ///< bit b: trips[b] has been started; others hold garbage. Block 0 is not kept: all lanes, once
+  std::uint32_t used =
+      0;  ///< bit b: trips[b] has been started; others hold garbage. Block 0 is not kept: all lanes, once
 };
 
 struct FragmentBatch {
@@ -56,16 +58,17 @@ struct FragmentBatch {
 
   // Of each quad
   std::array<std::int32_t, kBatchQuads> quad_x, quad_y;  ///< top left pixel
-  std::array<const float*, kBatchQuads> varyings[3];     ///< of the three vertices; null in full-screen passes
+  std::array<const float*, kBatchQuads> varyings[3];  ///< of the three vertices; null in full-screen passes
   std::array<std::uint32_t, kBatchQuads> primitive;
   std::array<bool, kBatchQuads> front_facing;
   std::array<const RasterTriangle*, kBatchQuads> triangle;
 
   // Of each lane
-  alignas(64) std::array<float, kBatchLanes> b1, b2;              ///< perspective-correct barycentrics at the shading point
+  alignas(64) std::array<float, kBatchLanes> b1,
+      b2;  ///< perspective-correct barycentrics at the shading point
   alignas(64) std::array<float, kBatchLanes> b1_center, b2_center;  ///< at the pixel center, for derivatives
   alignas(64) std::array<std::int32_t, kBatchLanes> pixel_x, pixel_y;
-  alignas(64) std::array<std::uint32_t, kBatchLanes> coverage;    ///< bit s: sample s
+  alignas(64) std::array<std::uint32_t, kBatchLanes> coverage;  ///< bit s: sample s
 
   const MaterialView* material = nullptr;
   const ResourceView* resources = nullptr;
@@ -98,8 +101,8 @@ struct VertexBatch {
   alignas(64) float varyings[kMaxVaryings][kBatchLanes];
 };
 
-/// A compute group. Its program runs phase after phase over all of the group's invocations; what would be a barrier in
-/// a shader is the end of a phase here.
+/// A compute group. Its program runs phase after phase over all of the group's invocations; what would be a
+/// barrier in a shader is the end of a phase here.
 struct GroupBatch {
   int group_x = 0, group_y = 0;
   int width = 0, height = 0;              ///< invocations of the group
@@ -108,7 +111,7 @@ struct GroupBatch {
   std::uint32_t* group_memory = nullptr;  ///< zeroed before the group starts
   const ComputeProgram* program = nullptr;
   PassCounters* counters = nullptr;
-  BlockTrips blocks;                      ///< of the 64 invocations of the current wave
+  BlockTrips blocks;  ///< of the 64 invocations of the current wave
 };
 
 }  // namespace hwsim::pipeline

@@ -50,10 +50,10 @@ HWY_INLINE void lane_coverage(const QuadSamples& samples, int count, std::uint32
   }
 }
 
-/// Attribute location of the centroid rule (techniques 0.3.6): the center where all samples are covered or none is,
-/// else the first covered sample in index order.
-inline void centroid_offsets(const std::uint32_t* coverage, std::span<const SamplePosition> positions, float* dx,
-                             float* dy) {
+/// Attribute location of the centroid rule (techniques 0.3.6): the center where all samples are covered or
+/// none is, else the first covered sample in index order.
+inline void centroid_offsets(const std::uint32_t* coverage, std::span<const SamplePosition> positions,
+                             float* dx, float* dy) {
   const std::uint32_t all = positions.size() == 32 ? 0xffffffffu : (1u << positions.size()) - 1;
   for (int lane = 0; lane < 4; ++lane) {
     const std::uint32_t bits = coverage[lane];
@@ -79,7 +79,8 @@ HWY_INLINE void barycentrics(const RasterTriangle& t, LaneF x, LaneF y, float* b
 
 /// Offsets of the attribute location from the pixel centers for lanes [first, ...).
 HWY_INLINE void location_offsets(const FragmentBatch& batch, int first, AttributeLocation location,
-                                 std::span<const SamplePosition> positions, int sample, LaneF& dx, LaneF& dy) {
+                                 std::span<const SamplePosition> positions, int sample, LaneF& dx,
+                                 LaneF& dy) {
   if (location == AttributeLocation::sample) {
     const SamplePosition p = positions[static_cast<std::size_t>(sample)];
     dx = LaneF(static_cast<float>(p.x) * 0.0625f);
@@ -125,8 +126,10 @@ HWY_INLINE void set_up_quad(FragmentBatch& batch, int quad, AttributeLocation lo
   if (t == nullptr) return;
   const D4 d;
   const auto q = static_cast<std::size_t>(quad);
-  const auto x = hn::Add(hn::Load(d, kQuadX), hn::Set(d, static_cast<float>(batch.quad_x[q] - t->reference_x) + 0.5f));
-  const auto y = hn::Add(hn::Load(d, kQuadY), hn::Set(d, static_cast<float>(batch.quad_y[q] - t->reference_y) + 0.5f));
+  const auto x =
+      hn::Add(hn::Load(d, kQuadX), hn::Set(d, static_cast<float>(batch.quad_x[q] - t->reference_x) + 0.5f));
+  const auto y =
+      hn::Add(hn::Load(d, kQuadY), hn::Set(d, static_cast<float>(batch.quad_y[q] - t->reference_y) + 0.5f));
   const int lane = 4 * quad;
   barycentrics(*t, x, y, batch.b1_center.data() + lane, batch.b2_center.data() + lane);
   if (location == AttributeLocation::center) {

@@ -78,8 +78,8 @@ void fetch_vertices(const DrawInfo& draw, std::uint32_t first, int count, Vertex
   }
 }
 
-void shade_vertices(const PassContext& context, const DrawInfo& draw, std::uint32_t first, std::uint32_t count,
-                    ShadedVertex* out, float* varyings, VertexBatch& batch) {
+void shade_vertices(const PassContext& context, const DrawInfo& draw, std::uint32_t first,
+                    std::uint32_t count, ShadedVertex* out, float* varyings, VertexBatch& batch) {
   const VertexProgram& program = *draw.batch->vertex;
   const GuardBand band = guard_band(context.width, context.height);
   for (std::uint32_t done = 0; done < count; done += kBatchLanes) {
@@ -106,31 +106,49 @@ void shade_vertices(const PassContext& context, const DrawInfo& draw, std::uint3
 /// Assembles, clips, culls and sets up the triangles of one item.
 class ItemBuilder {
  public:
-  ItemBuilder(const PassContext& context, const Segment& segment, GeometryItem& item, std::vector<PassCounters>& chunks)
-      : c_(context), draw_(context.draws[item.draw]), item_(item), chunks_(chunks),
+  ItemBuilder(const PassContext& context, const Segment& segment, GeometryItem& item,
+              std::vector<PassCounters>& chunks)
+      : c_(context),
+        draw_(context.draws[item.draw]),
+        item_(item),
+        chunks_(chunks),
         band_(guard_band(context.width, context.height)) {
     const std::size_t local = item.draw - segment.first_draw;
     vertices_ = segment.vertices.data() + segment.vertex_base[local];
     varyings_ = segment.varyings.data() + segment.varying_base[local];
     stride_ = static_cast<std::size_t>(draw_.batch->vertex->varying_scalars);
     const bool triangles = draw_.batch->state.raster.topology == Topology::triangles;
-    rules_ = {draw_.cull_back && triangles, draw_.cull_front && triangles, context.width, context.height, context.sample_min_x,
-              context.sample_min_y, context.sample_max_x, context.sample_max_y, draw_.batch->state.raster.conservative};
+    rules_ = {draw_.cull_back && triangles,
+              draw_.cull_front && triangles,
+              context.width,
+              context.height,
+              context.sample_min_x,
+              context.sample_min_y,
+              context.sample_max_x,
+              context.sample_max_y,
+              draw_.batch->state.raster.conservative};
   }
 
   void run() {
     item_.triangles.clear();
     item_.clipped_varyings.clear();
     const std::uint32_t step = draw_.indices_per_primitive();
-    const std::uint32_t* indices = draw_.mesh->indices.data() + draw_.part->first_index + step * item_.first_primitive;
+    const std::uint32_t* indices =
+        draw_.mesh->indices.data() + draw_.part->first_index + step * item_.first_primitive;
     for (std::uint32_t i = 0; i < item_.primitive_count; ++i, indices += step) {
       primitive_ = draw_.first_primitive + item_.first_primitive + i;
       chunk_ = primitive_ / c_.chunk_primitives;
       const auto vertex = [&](int k) { return indices[k] - draw_.first_vertex; };
       switch (draw_.batch->state.raster.topology) {
-        case Topology::triangles: add({vertex(0), vertex(1), vertex(2)}); break;
-        case Topology::points: add_point(vertex(0)); break;
-        case Topology::line_strip: add_line(vertex(0), vertex(1)); break;
+        case Topology::triangles:
+          add({vertex(0), vertex(1), vertex(2)});
+          break;
+        case Topology::points:
+          add_point(vertex(0));
+          break;
+        case Topology::line_strip:
+          add_line(vertex(0), vertex(1));
+          break;
       }
     }
     bin();
@@ -139,8 +157,10 @@ class ItemBuilder {
  private:
   using Vertices = std::array<std::uint32_t, 3>;
 
-  /// A quadrilateral in screen space, two triangles; corners in order around it, attributes of the vertices given.
-  void add_quad(const std::array<ScreenVertex, 4>& corner, const std::array<std::uint32_t, 4>& v, PassCounters& n) {
+  /// A quadrilateral in screen space, two triangles; corners in order around it, attributes of the vertices
+  /// given.
+  void add_quad(const std::array<ScreenVertex, 4>& corner, const std::array<std::uint32_t, 4>& v,
+                PassCounters& n) {
     n.stats.clipping_primitives += 1;
     for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
       const ScreenVertex screen[3] = {corner[0], corner[i], corner[i + 1]};
@@ -154,7 +174,8 @@ class ItemBuilder {
     n.stats.clipping_invocations += 1;
     const ShadedVertex& vertex = vertices_[v];
     if (vertex.outcode != 0) return cull_outside(n);  // by its center, as Direct3D does
-    const auto half = static_cast<std::int32_t>(std::lround(draw_.batch->state.raster.primitive_size_px * 0.5f * kSubpixelUnits));
+    const auto half = static_cast<std::int32_t>(
+        std::lround(draw_.batch->state.raster.primitive_size_px * 0.5f * kSubpixelUnits));
     std::array<ScreenVertex, 4> corner;
     corner.fill(vertex.screen);
     for (std::size_t i = 0; i < 4; ++i) {
@@ -172,7 +193,8 @@ class ItemBuilder {
     std::array<ClipVertex, kMaxClippedVertices> ends;
     const int count = clip_triangle({clip_vertex(a, 0), clip_vertex(b, 1), clip_vertex(b, 1)}, band_, ends);
     if (count < 3) return cull_outside(n);
-    // A triangle without width comes back as its clipped segment: the ends are the extremes of vertex 0's weight.
+    // A triangle without width comes back as its clipped segment: the ends are the extremes of vertex 0's
+    // weight.
     const auto [to, from] = std::minmax_element(
         ends.begin(), ends.begin() + count,
         [](const ClipVertex& p, const ClipVertex& q) { return p.weights[0] < q.weights[0]; });
@@ -183,8 +205,10 @@ class ItemBuilder {
     const ScreenVertex p = to_screen(from->position.data(), c_.width, c_.height);
     const ScreenVertex q = to_screen(to->position.data(), c_.width, c_.height);
     const double dx = q.x - p.x, dy = q.y - p.y, length = std::sqrt(dx * dx + dy * dy);
-    const double half = length > 0 ? draw_.batch->state.raster.primitive_size_px * 0.5 * kSubpixelUnits / length : 0.0;
-    const auto nx = static_cast<std::int32_t>(std::lround(-dy * half)), ny = static_cast<std::int32_t>(std::lround(dx * half));
+    const double half =
+        length > 0 ? draw_.batch->state.raster.primitive_size_px * 0.5 * kSubpixelUnits / length : 0.0;
+    const auto nx = static_cast<std::int32_t>(std::lround(-dy * half)),
+               ny = static_cast<std::int32_t>(std::lround(dx * half));
     const auto moved = [](ScreenVertex v, std::int32_t x, std::int32_t y) {
       v.x += x;
       v.y += y;
@@ -227,9 +251,11 @@ class ItemBuilder {
 
   void add_clipped(const Vertices& v, PassCounters& n) {
     std::array<ClipVertex, kMaxClippedVertices> polygon;
-    const int count = clip_triangle({clip_vertex(v[0], 0), clip_vertex(v[1], 1), clip_vertex(v[2], 2)}, band_, polygon);
+    const int count =
+        clip_triangle({clip_vertex(v[0], 0), clip_vertex(v[1], 1), clip_vertex(v[2], 2)}, band_, polygon);
     bool usable = count >= 3;
-    for (int i = 0; i < count; ++i) usable = usable && polygon[static_cast<std::size_t>(i)].position[3] > 1e-30;
+    for (int i = 0; i < count; ++i)
+      usable = usable && polygon[static_cast<std::size_t>(i)].position[3] > 1e-30;
     if (!usable) return cull_outside(n);
     const std::uint32_t first = clipped_count();
     for (int i = 0; i < count; ++i) append_varyings(v, polygon[static_cast<std::size_t>(i)].weights);
@@ -258,10 +284,17 @@ class ItemBuilder {
     n.setup.in_primitives += 1;
     RasterTriangle t;
     switch (set_up_triangle(screen, rules_, t)) {
-      case SetupResult::backface: n.setup.culled_backface_primitives += 1; return;
-      case SetupResult::zero_area: n.setup.culled_zero_area_primitives += 1; return;
-      case SetupResult::sample_miss: n.setup.culled_sample_miss_primitives += 1; return;
-      case SetupResult::drawn: break;
+      case SetupResult::backface:
+        n.setup.culled_backface_primitives += 1;
+        return;
+      case SetupResult::zero_area:
+        n.setup.culled_zero_area_primitives += 1;
+        return;
+      case SetupResult::sample_miss:
+        n.setup.culled_sample_miss_primitives += 1;
+        return;
+      case SetupResult::drawn:
+        break;
     }
     n.setup.out_primitives += 1;
     for (std::size_t i = 0; i < 3; ++i) t.vertex[i] = v[i];
@@ -275,7 +308,8 @@ class ItemBuilder {
   void bin() {
     const auto bins = static_cast<std::size_t>(c_.bins_x) * static_cast<std::size_t>(c_.bins_y);
     item_.bin_start.assign(bins + 1, 0);
-    for (const RasterTriangle& t : item_.triangles) for_each_bin(t, [&](std::size_t b) { item_.bin_start[b + 1] += 1; });
+    for (const RasterTriangle& t : item_.triangles)
+      for_each_bin(t, [&](std::size_t b) { item_.bin_start[b + 1] += 1; });
     for (std::size_t b = 0; b < bins; ++b) item_.bin_start[b + 1] += item_.bin_start[b];
     item_.binned.resize(item_.bin_start[bins]);
     std::vector<std::uint32_t> next(item_.bin_start.begin(), item_.bin_start.end() - 1);
@@ -285,11 +319,13 @@ class ItemBuilder {
 
   template <class Body>
   void for_each_bin(const RasterTriangle& t, Body&& body) const {
-    const int left = t.min_x / kBinPx, right = t.max_x / kBinPx, top = t.min_y / kBinPx, bottom = t.max_y / kBinPx;
+    const int left = t.min_x / kBinPx, right = t.max_x / kBinPx, top = t.min_y / kBinPx,
+              bottom = t.max_y / kBinPx;
     for (int y = top; y <= bottom; ++y)
       for (int x = left; x <= right; ++x)
         if ((left == right && top == bottom) || touches_bin(t, x, y))
-          body(static_cast<std::size_t>(y) * static_cast<std::size_t>(c_.bins_x) + static_cast<std::size_t>(x));
+          body(static_cast<std::size_t>(y) * static_cast<std::size_t>(c_.bins_x) +
+               static_cast<std::size_t>(x));
   }
 
   // Some point of the bin inside each edge; a bin's samples lie within its square.
@@ -327,7 +363,8 @@ void count_outside(const PassContext& context, const GeometryItem& item, std::ve
   }
 }
 
-void count_vertices(const PassContext& context, const GeometryItem& item, std::uint32_t misses, PassCounters& n) {
+void count_vertices(const PassContext& context, const GeometryItem& item, std::uint32_t misses,
+                    PassCounters& n) {
   const DrawInfo& draw = context.draws[item.draw];
   const VertexProgram& program = *draw.batch->vertex;
   const std::uint64_t indices = std::uint64_t{draw.indices_per_primitive()} * item.primitive_count;
@@ -362,7 +399,8 @@ std::vector<std::uint32_t> count_cache_misses(const Mesh& mesh, const Mesh::Part
                                               std::uint32_t indices_per_primitive, int cache_entries) {
   const std::uint32_t primitives = part.index_count / indices_per_primitive;
   std::vector<std::uint32_t> misses((primitives + kItemPrimitives - 1) / kItemPrimitives + 1, 0);
-  std::vector<std::uint64_t> loaded(mesh.positions.size(), 0);  // 1 + the miss by which the vertex came in last
+  std::vector<std::uint64_t> loaded(mesh.positions.size(),
+                                    0);  // 1 + the miss by which the vertex came in last
   std::uint64_t total = 0;
   for (std::uint32_t i = 0; i < part.index_count; ++i) {
     std::uint64_t& at = loaded[mesh.indices[part.first_index + i]];
@@ -416,7 +454,10 @@ void count_vertex_work(const PassContext& context, const Segment& segment, int c
     const DrawInfo& draw = context.draws[item.draw];
     auto found = misses.find(draw.part);
     if (found == misses.end())
-      found = misses.emplace(draw.part, count_cache_misses(*draw.mesh, *draw.part, draw.indices_per_primitive(), cache_entries)).first;
+      found = misses
+                  .emplace(draw.part, count_cache_misses(*draw.mesh, *draw.part, draw.indices_per_primitive(),
+                                                         cache_entries))
+                  .first;
     const std::uint32_t chunk = (draw.first_primitive + item.first_primitive) / context.chunk_primitives;
     count_vertices(context, item, found->second[item.first_primitive / kItemPrimitives], chunks[chunk]);
   }
@@ -436,8 +477,9 @@ std::uint64_t run_geometry(const PassContext& context, Segment& segment, const G
     const std::size_t local = task.draw - segment.first_draw;
     float* varyings = segment.varyings.data() + segment.varying_base[local] +
                       std::size_t{task.first} * static_cast<std::size_t>(draw.batch->vertex->varying_scalars);
-    shade_vertices(context, draw, task.first, task.count, segment.vertices.data() + segment.vertex_base[local] + task.first,
-                   varyings, batches[static_cast<std::size_t>(worker)]);
+    shade_vertices(context, draw, task.first, task.count,
+                   segment.vertices.data() + segment.vertex_base[local] + task.first, varyings,
+                   batches[static_cast<std::size_t>(worker)]);
   });
   parallel_for(segment.items.size(), options.jobs, [&](std::size_t i, int worker) {
     GeometryItem& item = segment.items[i];

@@ -17,8 +17,9 @@ struct GeometryOptions {
 /// Cuts draws [first, last) into items.
 Segment make_segment(const PassContext& context, std::uint32_t first, std::uint32_t last);
 
-/// Runs all geometry work of a segment; `chunks`: one array of counters for each worker. Returns the number of draws
-/// that were skipped because they lie outside the view volume (their triangles are counted as culled all the same).
+/// Runs all geometry work of a segment; `chunks`: one array of counters for each worker. Returns the number
+/// of draws that were skipped because they lie outside the view volume (their triangles are counted as culled
+/// all the same).
 std::uint64_t run_geometry(const PassContext& context, Segment& segment, const GeometryOptions& options,
                            std::vector<BinWorker>& workers);
 

@@ -8,30 +8,33 @@
 
 namespace hwsim::pipeline {
 
-inline constexpr int kBlockPx = 8;       ///< depth, color and coarse-depth state is kept for 8x8 pixel tiles
-inline constexpr int kBlockLanes = 64;   ///< pixels of a tile
+inline constexpr int kBlockPx = 8;      ///< depth, color and coarse-depth state is kept for 8x8 pixel tiles
+inline constexpr int kBlockLanes = 64;  ///< pixels of a tile
 inline constexpr int kQuadsPerBlock = 16;
 
-/// Lane of pixel (x, y) within its tile, 0..7 each: quads are four consecutive lanes, and quads follow the Morton
-/// order. So a vector register of any width holds whole quads.
+/// Lane of pixel (x, y) within its tile, 0..7 each: quads are four consecutive lanes, and quads follow the
+/// Morton order. So a vector register of any width holds whole quads.
 constexpr int lane_of(int x, int y) {
   return (x & 1) | ((y & 1) << 1) | ((x & 2) << 1) | ((y & 2) << 2) | ((x & 4) << 2) | ((y & 4) << 3);
 }
 constexpr int lane_x(int lane) { return (lane & 1) | ((lane >> 1) & 2) | ((lane >> 2) & 4); }
 constexpr int lane_y(int lane) { return ((lane >> 1) & 1) | ((lane >> 2) & 2) | ((lane >> 3) & 4); }
 
-/// Texels are stored tile by tile; in a tile sample by sample; in a sample, for each 32-bit word of a texel, the 64
-/// lanes. Formats below 32 bits take a word each here; what the simulated GPU allocates is the format's business.
-/// Depth formats hold the depth as an integer that orders as the depth does (see depth/depth_format.h), stencil apart.
+/// Texels are stored tile by tile; in a tile sample by sample; in a sample, for each 32-bit word of a texel,
+/// the 64 lanes. Formats below 32 bits take a word each here; what the simulated GPU allocates is the
+/// format's business. Depth formats hold the depth as an integer that orders as the depth does (see
+/// depth/depth_format.h), stencil apart.
 struct GpuImage {
   Format format = Format::none;
   int width = 0, height = 0, samples = 1;
   int words = 1;  ///< 32-bit words of a texel
   int blocks_x = 0, blocks_y = 0;
   std::vector<std::uint32_t> texels;
-  std::vector<std::uint8_t> stencil;                ///< as texels with one word, only for stencil formats
-  std::vector<std::uint32_t> depth_min, depth_max;  ///< of each tile, depth formats only: bounds, exact after each draw
-  std::vector<std::uint32_t> touched_chunk;         ///< of each tile: 1 + the last chunk of the current pass that used it
+  std::vector<std::uint8_t> stencil;  ///< as texels with one word, only for stencil formats
+  std::vector<std::uint32_t> depth_min,
+      depth_max;  ///< of each tile, depth formats only: bounds, exact after each draw
+  std::vector<std::uint32_t>
+      touched_chunk;  ///< of each tile: 1 + the last chunk of the current pass that used it
 
   /// A clear only marks its tiles, as hardware's fast clear does; a tile is filled when it is first used.
   std::vector<std::uint8_t> cleared;  ///< of each tile: 1 while its texels are still to be filled
@@ -50,12 +53,15 @@ struct GpuImage {
   void use_all(int jobs);
 
   std::size_t block_words() const { return static_cast<std::size_t>(samples * words * kBlockLanes); }
-  std::uint32_t* block(int block_index) { return texels.data() + static_cast<std::size_t>(block_index) * block_words(); }
+  std::uint32_t* block(int block_index) {
+    return texels.data() + static_cast<std::size_t>(block_index) * block_words();
+  }
   const std::uint32_t* block(int block_index) const {
     return texels.data() + static_cast<std::size_t>(block_index) * block_words();
   }
   std::uint8_t* stencil_block(int block_index) {
-    return stencil.data() + static_cast<std::size_t>(block_index) * static_cast<std::size_t>(samples * kBlockLanes);
+    return stencil.data() +
+           static_cast<std::size_t>(block_index) * static_cast<std::size_t>(samples * kBlockLanes);
   }
   int block_index(int x, int y) const { return (y / kBlockPx) * blocks_x + x / kBlockPx; }
   std::size_t word_index(int x, int y, int sample, int word) const {

@@ -13,8 +13,8 @@ void set_transform(const glm::mat4& world_from_local, DrawInfo& draw) {
   const glm::mat3 linear(world_from_local);
   const float determinant = glm::determinant(linear);
   draw.mirrored = determinant < 0.0f;
-  // The cofactor matrix is the inverse transpose times the determinant: it needs no division, so it also serves
-  // transforms that flatten; the sign keeps normals on their side.
+  // The cofactor matrix is the inverse transpose times the determinant: it needs no division, so it also
+  // serves transforms that flatten; the sign keeps normals on their side.
   const glm::mat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                            glm::cross(linear[0], linear[1]));
   const glm::mat3 normal = cofactor * (draw.mirrored ? -1.0f : 1.0f);

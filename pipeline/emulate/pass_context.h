@@ -22,9 +22,10 @@ struct PassContext {
   std::vector<DrawInfo> draws;
   std::uint32_t chunk_primitives = 1;  ///< triangles of a chunk
   std::size_t chunk_count = 1;
-  std::uint32_t* heat = nullptr;  ///< invocations of each pixel, tile by tile as in GpuImage; null: not wanted
+  std::uint32_t* heat =
+      nullptr;  ///< invocations of each pixel, tile by tile as in GpuImage; null: not wanted
   int heat_blocks_x = 0;
-  int heat_shift = 0;             ///< the heat image's pixels are this much coarser (log2)
+  int heat_shift = 0;  ///< the heat image's pixels are this much coarser (log2)
   SkipSwitches skip;
 };
 
@@ -35,7 +36,7 @@ struct QuadSamples {
 
 struct BinWorker {
   FragmentBatch batch;
-  std::array<std::int32_t, kBatchQuads> block;        ///< tile of each quad in the targets
+  std::array<std::int32_t, kBatchQuads> block;  ///< tile of each quad in the targets
   std::array<std::int32_t, kBatchQuads> quad_in_block;
   std::array<QuadSamples, kBatchQuads> samples;
   FragmentBatch sample_batch;                         ///< sample-rate shading: the quads that have the sample
@@ -46,7 +47,7 @@ struct BinWorker {
   std::vector<PassCounters> chunks;
   std::uint32_t current_chunk = 0;
   std::uint64_t accepted_tiles_skipped = 0;
-  const DrawInfo* draw = nullptr;         ///< of the quads in `batch`
+  const DrawInfo* draw = nullptr;  ///< of the quads in `batch`
   const PipelineState* state = nullptr;
   const FragmentProgram* program = nullptr;
   const void* uniforms = nullptr;
@@ -64,7 +65,8 @@ void run_full_screen_bin(const PassContext& context, int bin, BinWorker& worker)
 bool tests_late(const PipelineState& state, const FragmentProgram* program);
 
 /// Charges the batch's invocations and their blocks' operations.
-void account_shading(const FragmentBatch& batch, const FragmentProgram& program, bool sample_rate, PassCounters& counters);
+void account_shading(const FragmentBatch& batch, const FragmentProgram& program, bool sample_rate,
+                     PassCounters& counters);
 void account_blocks(const BlockTrips& blocks, const BlockOps& ops, int block_count, std::uint64_t valid_lanes,
                     PassCounters& counters);
 

@@ -1,6 +1,6 @@
 #pragma once
-// A run of draws whose triangles are set up, binned and rasterized together. Segments bound memory; they follow each
-// other in submission order, so the result does not depend on where they are cut.
+// A run of draws whose triangles are set up, binned and rasterized together. Segments bound memory; they
+// follow each other in submission order, so the result does not depend on where they are cut.
 #include <cstdint>
 #include <vector>
 
@@ -21,17 +21,22 @@ struct DrawInfo {
   const MaterialView* material = nullptr;
   float world_from_local[16] = {};
   float normal_from_local[9] = {};
-  bool mirrored = false;      ///< the transform flips the winding
-  bool cull_back = false;     ///< after double-sidedness and mirroring
+  bool mirrored = false;   ///< the transform flips the winding
+  bool cull_back = false;  ///< after double-sidedness and mirroring
   bool cull_front = false;
   std::uint32_t first_vertex = 0, vertex_count = 0;  ///< range of the mesh's vertices that the part uses
   std::uint32_t first_primitive = 0;                 ///< number in the pass of its first primitive
-  std::uint32_t indices_per_primitive() const { return batch->state.raster.topology == Topology::triangles ? 3 : 1; }
+  std::uint32_t indices_per_primitive() const {
+    return batch->state.raster.topology == Topology::triangles ? 3 : 1;
+  }
   std::uint32_t primitive_count() const {
     switch (batch->state.raster.topology) {
-      case Topology::triangles: return part->index_count / 3;
-      case Topology::points: return part->index_count;
-      case Topology::line_strip: return part->index_count > 1 ? part->index_count - 1 : 0;
+      case Topology::triangles:
+        return part->index_count / 3;
+      case Topology::points:
+        return part->index_count;
+      case Topology::line_strip:
+        return part->index_count > 1 ? part->index_count - 1 : 0;
     }
     return 0;
   }
@@ -48,16 +53,16 @@ struct GeometryItem {
 
   std::vector<RasterTriangle> triangles;
   std::vector<float> clipped_varyings;
-  std::vector<std::uint32_t> binned;     ///< triangle numbers, sorted by bin, in submission order within a bin
+  std::vector<std::uint32_t> binned;  ///< triangle numbers, sorted by bin, in submission order within a bin
   std::vector<std::uint32_t> bin_start;  ///< bins + 1 offsets into `binned`
 };
 
 /// A vertex after the vertex shader.
 struct ShadedVertex {
   float clip_position[4];
-  ScreenVertex screen;         ///< valid unless needs_clip
-  std::uint8_t outcode = 0;    ///< see frustum_outcode
-  bool needs_clip = false;     ///< behind near, beyond far, or out of the guard band
+  ScreenVertex screen;       ///< valid unless needs_clip
+  std::uint8_t outcode = 0;  ///< see frustum_outcode
+  bool needs_clip = false;   ///< behind near, beyond far, or out of the guard band
 };
 
 struct Segment {
@@ -65,9 +70,9 @@ struct Segment {
   std::vector<ShadedVertex> vertices;
   std::vector<float> varyings;  ///< of all draws; stride: varying_scalars of the draw's vertex program
   std::uint32_t first_draw = 0;
-  std::vector<std::uint32_t> vertex_base;   ///< of each draw of the segment: its first element of `vertices`
-  std::vector<std::size_t> varying_base;    ///< likewise of `varyings`
-  std::vector<char> outside;                ///< likewise: no part of it is in the view volume
+  std::vector<std::uint32_t> vertex_base;  ///< of each draw of the segment: its first element of `vertices`
+  std::vector<std::size_t> varying_base;   ///< likewise of `varyings`
+  std::vector<char> outside;               ///< likewise: no part of it is in the view volume
 };
 
 }  // namespace hwsim::pipeline

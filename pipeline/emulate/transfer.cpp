@@ -27,7 +27,8 @@ void resolve_block(const GpuImage& from, GpuImage& to, int block) {
     Vec4<LaneF> sum = {LaneF(0.0f), LaneF(0.0f), LaneF(0.0f), LaneF(0.0f)};
     for (int s = 0; s < from.samples; ++s) {
       LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
-      for (int w = 0; w < from.words; ++w) words[w] = load(source + (s * from.words + w) * kBlockLanes + first);
+      for (int w = 0; w < from.words; ++w)
+        words[w] = load(source + (s * from.words + w) * kBlockLanes + first);
       sum = sum + decode_texel<LaneF, LaneI>(from.format, words, srgb);
     }
     LaneI encoded[4];
@@ -112,15 +113,20 @@ void resolve_image(const GpuImage& from, GpuImage& to, int jobs) {
   });
 }
 
-std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* source, std::span<GpuImage* const> targets) {
+std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* source,
+                                         std::span<GpuImage* const> targets) {
   constexpr std::uint64_t kBands = 64;
   std::vector<PassCounters> chunks(kBands);
-  const auto band = [&](std::uint64_t amount, std::uint64_t i) { return amount * (i + 1) / kBands - amount * i / kBands; };
+  const auto band = [&](std::uint64_t amount, std::uint64_t i) {
+    return amount * (i + 1) / kBands - amount * i / kBands;
+  };
   for (std::uint64_t i = 0; i < kBands; ++i) {
     PassCounters& n = chunks[i];
     for (const GpuImage* target : targets) {
-      const auto tiles = static_cast<std::uint64_t>(target->blocks_x) * static_cast<std::uint64_t>(target->blocks_y);
-      const auto pixels = static_cast<std::uint64_t>(target->width) * static_cast<std::uint64_t>(target->height);
+      const auto tiles =
+          static_cast<std::uint64_t>(target->blocks_x) * static_cast<std::uint64_t>(target->blocks_y);
+      const auto pixels =
+          static_cast<std::uint64_t>(target->width) * static_cast<std::uint64_t>(target->height);
       const std::uint64_t bytes = info(target->format).bytes;
       const auto samples = static_cast<std::uint64_t>(target->samples);
       if (pass.kind == PassKind::clear) {

@@ -18,6 +18,7 @@ void resolve_image(const GpuImage& from, GpuImage& to, int jobs);
 Image to_linear_image(const GpuImage& from, int jobs);
 
 /// Work of a transfer, in a chunk for each band of tiles.
-std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* source, std::span<GpuImage* const> targets);
+std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* source,
+                                         std::span<GpuImage* const> targets);
 
 }  // namespace hwsim::pipeline

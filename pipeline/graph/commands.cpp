@@ -24,30 +24,48 @@ void record_draws(const FrameGraph& graph, const Pass& pass, std::vector<Command
 
 std::string_view command_name(CommandKind kind) {
   switch (kind) {
-    case CommandKind::barrier: return "barrier";
-    case CommandKind::bind_targets: return "bind_targets";
-    case CommandKind::bind_pipeline: return "bind_pipeline";
-    case CommandKind::bind_resources: return "bind_resources";
-    case CommandKind::draw: return "draw";
-    case CommandKind::dispatch: return "dispatch";
-    case CommandKind::clear: return "clear";
-    case CommandKind::copy: return "copy";
-    case CommandKind::resolve: return "resolve";
+    case CommandKind::barrier:
+      return "barrier";
+    case CommandKind::bind_targets:
+      return "bind_targets";
+    case CommandKind::bind_pipeline:
+      return "bind_pipeline";
+    case CommandKind::bind_resources:
+      return "bind_resources";
+    case CommandKind::draw:
+      return "draw";
+    case CommandKind::dispatch:
+      return "dispatch";
+    case CommandKind::clear:
+      return "clear";
+    case CommandKind::copy:
+      return "copy";
+    case CommandKind::resolve:
+      return "resolve";
   }
   return "draw";
 }
 
 std::uint32_t command_words(CommandKind kind) {
   switch (kind) {
-    case CommandKind::barrier: return 6;
-    case CommandKind::bind_targets: return 40;
-    case CommandKind::bind_pipeline: return 64;
-    case CommandKind::bind_resources: return 24;
-    case CommandKind::draw: return 6;
-    case CommandKind::dispatch: return 5;
-    case CommandKind::clear: return 12;
-    case CommandKind::copy: return 16;
-    case CommandKind::resolve: return 16;
+    case CommandKind::barrier:
+      return 6;
+    case CommandKind::bind_targets:
+      return 40;
+    case CommandKind::bind_pipeline:
+      return 64;
+    case CommandKind::bind_resources:
+      return 24;
+    case CommandKind::draw:
+      return 6;
+    case CommandKind::dispatch:
+      return 5;
+    case CommandKind::clear:
+      return 12;
+    case CommandKind::copy:
+      return 16;
+    case CommandKind::resolve:
+      return 16;
   }
   return 0;
 }
@@ -69,15 +87,20 @@ std::vector<Command> record_pass(const FrameGraph& graph, const Pass& pass, bool
       break;
     case PassKind::compute:
       out.push_back({CommandKind::bind_pipeline, 0, 0, 1});
-      out.push_back({CommandKind::bind_resources, 0, 0, pass.sampled.size() + pass.storage.size() + pass.targets.size()});
+      out.push_back({CommandKind::bind_resources, 0, 0,
+                     pass.sampled.size() + pass.storage.size() + pass.targets.size()});
       out.push_back({CommandKind::dispatch, 0, 0,
                      static_cast<std::uint64_t>(pass.groups_x) * static_cast<std::uint64_t>(pass.groups_y)});
       break;
     case PassKind::clear:
       for (std::size_t i = 0; i < pass.targets.size(); ++i) out.push_back({CommandKind::clear, 0, 0, 1});
       break;
-    case PassKind::copy: out.push_back({CommandKind::copy, 0, 0, 1}); break;
-    case PassKind::resolve: out.push_back({CommandKind::resolve, 0, 0, 1}); break;
+    case PassKind::copy:
+      out.push_back({CommandKind::copy, 0, 0, 1});
+      break;
+    case PassKind::resolve:
+      out.push_back({CommandKind::resolve, 0, 0, 1});
+      break;
   }
   return out;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// What a driver would send for a compiled graph: the command stream, and what its commands cost the front end.
+// What a driver would send for a compiled graph: the command stream, and what its commands cost the front
+// end.
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -21,8 +22,9 @@ enum class CommandKind : std::uint8_t {
 };
 std::string_view command_name(CommandKind kind);
 
-/// 32-bit words that the front end parses for a command: the header and its operands as open drivers write them for
-/// the generation of the calibration GPUs, rounded. The timing engines charge draws and changes, not words.
+/// 32-bit words that the front end parses for a command: the header and its operands as open drivers write
+/// them for the generation of the calibration GPUs, rounded. The timing engines charge draws and changes, not
+/// words.
 std::uint32_t command_words(CommandKind kind);
 
 struct Command {
@@ -32,8 +34,8 @@ struct Command {
   std::uint64_t count = 0;  ///< draws: indices; dispatches: groups; others: targets or resources
 };
 
-/// The commands of one pass, in order. Binds are sent when they change something: a pipeline for each batch, resources
-/// for each new material.
+/// The commands of one pass, in order. Binds are sent when they change something: a pipeline for each batch,
+/// resources for each new material.
 std::vector<Command> record_pass(const FrameGraph& graph, const Pass& pass, bool barrier_before);
 
 }  // namespace hwsim::pipeline

@@ -7,17 +7,21 @@
 namespace hwsim::pipeline {
 namespace {
 
-bool overwrites(PassKind kind) { return kind == PassKind::clear || kind == PassKind::copy || kind == PassKind::resolve; }
+bool overwrites(PassKind kind) {
+  return kind == PassKind::clear || kind == PassKind::copy || kind == PassKind::resolve;
+}
 
 bool writes_stencil(const PipelineState& state) {
   const StencilState& s = state.stencil;
-  return s.test && (s.on_pass != StencilOp::keep || s.on_fail != StencilOp::keep || s.on_depth_fail != StencilOp::keep);
+  return s.test &&
+         (s.on_pass != StencilOp::keep || s.on_fail != StencilOp::keep || s.on_depth_fail != StencilOp::keep);
 }
 
 /// Read-only depth may still have its stencil written.
 bool writes_stencil(const Pass& pass) {
-  return writes_stencil(pass.state) || std::any_of(pass.batches.begin(), pass.batches.end(),
-                                                   [](const DrawBatch& b) { return writes_stencil(b.state); });
+  return writes_stencil(pass.state) ||
+         std::any_of(pass.batches.begin(), pass.batches.end(),
+                     [](const DrawBatch& b) { return writes_stencil(b.state); });
 }
 
 /// Images and buffers in one index space: buffers follow the images.
@@ -48,8 +52,8 @@ std::vector<char> find_needed(const FrameGraph& graph, const std::vector<Access>
   if (graph.output()) wanted[static_cast<std::size_t>(graph.output().index)] = 1;
   for (std::size_t i = passes.size(); i-- > 0;) {
     const Access& a = accesses[i];
-    const bool writes_wanted =
-        std::any_of(a.writes.begin(), a.writes.end(), [&](int r) { return wanted[static_cast<std::size_t>(r)] != 0; });
+    const bool writes_wanted = std::any_of(a.writes.begin(), a.writes.end(),
+                                           [&](int r) { return wanted[static_cast<std::size_t>(r)] != 0; });
     if (!writes_wanted && !passes[i].keep) continue;
     needed[i] = 1;
     for (const int r : a.writes) wanted[static_cast<std::size_t>(r)] = overwrites(passes[i].kind) ? 0 : 1;
@@ -62,9 +66,10 @@ void find_barriers(const std::vector<Access>& accesses, CompiledGraph& compiled,
   std::vector<char> written(resources, 0);
   for (const int index : compiled.order) {
     const Access& a = accesses[static_cast<std::size_t>(index)];
-    // Reading what an earlier pass wrote waits for it; attachments of successive passes stay in order without a wait.
-    const bool waits =
-        std::any_of(a.reads.begin(), a.reads.end(), [&](int r) { return written[static_cast<std::size_t>(r)] != 0; });
+    // Reading what an earlier pass wrote waits for it; attachments of successive passes stay in order without
+    // a wait.
+    const bool waits = std::any_of(a.reads.begin(), a.reads.end(),
+                                   [&](int r) { return written[static_cast<std::size_t>(r)] != 0; });
     if (waits) std::fill(written.begin(), written.end(), 0);
     compiled.barrier_before.push_back(waits ? 1 : 0);
     for (const int r : a.writes) written[static_cast<std::size_t>(r)] = 1;
@@ -84,7 +89,8 @@ void find_lifetimes(const FrameGraph& graph, const std::vector<Access>& accesses
     std::for_each(a.writes.begin(), a.writes.end(), use);
   }
   if (graph.output() && !compiled.order.empty())  // it is presented after the last pass
-    all[static_cast<std::size_t>(graph.output().index)].last_pass = static_cast<int>(compiled.order.size()) - 1;
+    all[static_cast<std::size_t>(graph.output().index)].last_pass =
+        static_cast<int>(compiled.order.size()) - 1;
   const auto images = static_cast<std::ptrdiff_t>(graph.images().size());
   compiled.images.assign(all.begin(), all.begin() + images);
   compiled.buffers.assign(all.begin() + images, all.end());
@@ -97,14 +103,17 @@ void sum_memory(const FrameGraph& graph, CompiledGraph& compiled) {
     compiled.allocated_bytes += bytes;
     for (int p = life.first_pass; p <= life.last_pass; ++p) live[static_cast<std::size_t>(p)] += bytes;
   };
-  for (std::size_t i = 0; i < compiled.images.size(); ++i) add(compiled.images[i], allocated_bytes(graph.images()[i]));
-  for (std::size_t i = 0; i < compiled.buffers.size(); ++i) add(compiled.buffers[i], allocated_bytes(graph.buffers()[i]));
+  for (std::size_t i = 0; i < compiled.images.size(); ++i)
+    add(compiled.images[i], allocated_bytes(graph.images()[i]));
+  for (std::size_t i = 0; i < compiled.buffers.size(); ++i)
+    add(compiled.buffers[i], allocated_bytes(graph.buffers()[i]));
   compiled.peak_bytes = *std::max_element(live.begin(), live.end());
 }
 
 }  // namespace
 
-CompiledGraph compile(const FrameGraph& graph, const GpuFeatures& features, const FunctionalConfig& functional) {
+CompiledGraph compile(const FrameGraph& graph, const GpuFeatures& features,
+                      const FunctionalConfig& functional) {
   std::vector<Diagnostic> errors = validate(graph, features, functional);
   if (!errors.empty()) throw InputError(std::move(errors));
   std::vector<Access> accesses;

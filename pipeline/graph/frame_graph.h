@@ -1,6 +1,7 @@
 #pragma once
-// A technique as data: passes that declare what they read and write. From it follow the passes that are needed, the
-// lifetimes and so the memory footprint, the barriers and the command stream. Building a graph runs nothing.
+// A technique as data: passes that declare what they read and write. From it follow the passes that are
+// needed, the lifetimes and so the memory footprint, the barriers and the command stream. Building a graph
+// runs nothing.
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -40,7 +41,8 @@ struct BufferDesc {
   std::uint64_t words = 0;  ///< 32-bit words
 };
 
-/// Bytes as allocated: width * height * samples * bytes per element. No padding: the papers' figures have none.
+/// Bytes as allocated: width * height * samples * bytes per element. No padding: the papers' figures have
+/// none.
 std::uint64_t allocated_bytes(const ImageDesc& image);
 std::uint64_t allocated_bytes(const BufferDesc& buffer);
 
@@ -63,8 +65,8 @@ struct DrawBatch {
 struct Pass {
   std::string name;
   PassKind kind = PassKind::draw;
-  int width = 0, height = 0;   ///< viewport in pixels
-  int samples = 1;             ///< raster samples
+  int width = 0, height = 0;  ///< viewport in pixels
+  int samples = 1;            ///< raster samples
 
   std::vector<ImageId> color;  ///< attachments of draw and full-screen passes
   ImageId depth;
@@ -73,11 +75,11 @@ struct Pass {
   std::vector<BufferId> storage;      ///< buffers that shaders read or write, in the order of their slots
   std::uint64_t storage_written = 0;  ///< bit i: storage[i] is written
 
-  std::vector<DrawBatch> batches;       // draw
-  PipelineState state;                  // full_screen
+  std::vector<DrawBatch> batches;  // draw
+  PipelineState state;             // full_screen
   const FragmentProgram* fragment = nullptr;
   const ComputeProgram* compute = nullptr;
-  int groups_x = 0, groups_y = 0;       // compute
+  int groups_x = 0, groups_y = 0;        // compute
   std::shared_ptr<const void> uniforms;  // full_screen and compute
 
   std::vector<ImageId> targets;  ///< clear: images; copy and resolve: the destination
@@ -125,17 +127,19 @@ struct CompiledGraph {
   struct Lifetime {
     int first_pass = -1, last_pass = -1;  ///< indices into `order`; -1: never used
   };
-  std::vector<int> order;             ///< passes that run, in order of submission (indices into FrameGraph::passes)
-  std::vector<int> culled;            ///< passes whose results nobody reads
-  std::vector<char> barrier_before;   ///< one for each of `order`: it reads or overwrites what a pass since the last barrier wrote
+  std::vector<int> order;   ///< passes that run, in order of submission (indices into FrameGraph::passes)
+  std::vector<int> culled;  ///< passes whose results nobody reads
+  std::vector<char> barrier_before;  ///< one for each of `order`: it reads or overwrites what a pass since
+                                     ///< the last barrier wrote
   std::vector<Lifetime> images, buffers;
   std::uint64_t peak_bytes = 0;       ///< the largest sum of live images and buffers
   std::uint64_t allocated_bytes = 0;  ///< sum over all that are used, without reuse of memory
 };
 
-/// Throws InputError with every violation found (codes G0xx), as a driver's debug layer reports them: format and
-/// sample-count mismatches, feedback loops, images read before anything wrote them, multisampled images presented or
-/// filtered without a resolve, features that this GPU lacks.
-CompiledGraph compile(const FrameGraph& graph, const GpuFeatures& features, const FunctionalConfig& functional);
+/// Throws InputError with every violation found (codes G0xx), as a driver's debug layer reports them: format
+/// and sample-count mismatches, feedback loops, images read before anything wrote them, multisampled images
+/// presented or filtered without a resolve, features that this GPU lacks.
+CompiledGraph compile(const FrameGraph& graph, const GpuFeatures& features,
+                      const FunctionalConfig& functional);
 
 }  // namespace hwsim::pipeline

@@ -6,12 +6,39 @@
 
 namespace hwsim::pipeline {
 
-enum class Compare : std::uint8_t { never, less, equal, less_equal, greater, not_equal, greater_equal, always };
-enum class StencilOp : std::uint8_t { keep, zero, replace, increment_saturate, decrement_saturate, invert, increment_wrap, decrement_wrap };
+enum class Compare : std::uint8_t {
+  never,
+  less,
+  equal,
+  less_equal,
+  greater,
+  not_equal,
+  greater_equal,
+  always
+};
+enum class StencilOp : std::uint8_t {
+  keep,
+  zero,
+  replace,
+  increment_saturate,
+  decrement_saturate,
+  invert,
+  increment_wrap,
+  decrement_wrap
+};
 enum class CullMode : std::uint8_t { none, back, front };
-enum class BlendFactor : std::uint8_t { zero, one, src_alpha, one_minus_src_alpha, dst_alpha, one_minus_dst_alpha, src_color, dst_color };
-/// Points are squares of primitive_size_px centered on their vertex, never culled; line strips are rectangles of that
-/// width along each segment (wires that are drawn without geometry of their own).
+enum class BlendFactor : std::uint8_t {
+  zero,
+  one,
+  src_alpha,
+  one_minus_src_alpha,
+  dst_alpha,
+  one_minus_dst_alpha,
+  src_color,
+  dst_color
+};
+/// Points are squares of primitive_size_px centered on their vertex, never culled; line strips are rectangles
+/// of that width along each segment (wires that are drawn without geometry of their own).
 enum class Topology : std::uint8_t { triangles, points, line_strip };
 
 struct DepthState {

@@ -26,23 +26,26 @@ class Validator {
   }
 
   static std::string text(const ImageDesc& image) {
-    return "`" + image.name + "` (" + std::string(info(image.format).name) + ", " + std::to_string(image.width) + "x" +
-           std::to_string(image.height) + ", " + std::to_string(image.samples) + "x)";
+    return "`" + image.name + "` (" + std::string(info(image.format).name) + ", " +
+           std::to_string(image.width) + "x" + std::to_string(image.height) + ", " +
+           std::to_string(image.samples) + "x)";
   }
 
   void check_image(const ImageDesc& image) {
     if (image.width < 1 || image.height < 1 || image.width > functional_.max_image_px ||
         image.height > functional_.max_image_px)
-      fail("G001", "image " + text(image) + " must be 1 to " + std::to_string(functional_.max_image_px) +
-                       " pixels wide and high",
+      fail("G001",
+           "image " + text(image) + " must be 1 to " + std::to_string(functional_.max_image_px) +
+               " pixels wide and high",
            "choose a smaller resolution or supersampling rate");
     if (image.format == Format::none) fail("G003", "image `" + image.name + "` has no format");
     const int s = image.samples;
     if (s < 1 || s > kMaxSamples || (s & (s - 1)) != 0)
       fail("G002", "image " + text(image) + " must have 1, 2, 4, 8, 16 or 32 samples");
     else if (s > features_.native_msaa_max)
-      fail("G006", "image " + text(image) + " needs " + std::to_string(s) + " samples, this GPU has " +
-                       std::to_string(features_.native_msaa_max),
+      fail("G006",
+           "image " + text(image) + " needs " + std::to_string(s) + " samples, this GPU has " +
+               std::to_string(features_.native_msaa_max),
            "gpu.features.native_msaa_max = " + std::to_string(s) + " makes it native");
   }
 
@@ -52,21 +55,28 @@ class Validator {
     if (pass.source) check_read(pass, pass.source);
     switch (pass.kind) {
       case PassKind::draw:
-      case PassKind::full_screen: check_attachments(pass); break;
-      case PassKind::compute: check_compute(pass); break;
+      case PassKind::full_screen:
+        check_attachments(pass);
+        break;
+      case PassKind::compute:
+        check_compute(pass);
+        break;
       case PassKind::clear:
         for (const ImageId id : pass.targets) mark_written(id);
         break;
       case PassKind::copy:
-      case PassKind::resolve: check_transfer(pass); break;
+      case PassKind::resolve:
+        check_transfer(pass);
+        break;
     }
   }
 
   void check_slots(const Pass& pass) {
     if (pass.sampled.size() > kMaxImageSlots || pass.storage.size() > kMaxBufferSlots)
       fail("G007", "pass `" + pass.name + "` binds " + std::to_string(pass.sampled.size()) + " images and " +
-                       std::to_string(pass.storage.size()) + " buffers, at most " + std::to_string(kMaxImageSlots) +
-                       " and " + std::to_string(kMaxBufferSlots) + " are supported");
+                       std::to_string(pass.storage.size()) + " buffers, at most " +
+                       std::to_string(kMaxImageSlots) + " and " + std::to_string(kMaxBufferSlots) +
+                       " are supported");
     const int s = pass.samples;
     if (s < 1 || s > kMaxSamples || (s & (s - 1)) != 0)
       fail("G002", "pass `" + pass.name + "` rasterizes " + std::to_string(s) +
@@ -75,12 +85,14 @@ class Validator {
 
   void check_read(const Pass& pass, ImageId id) {
     if (written_[static_cast<std::size_t>(id.index)] == 0)
-      fail("G005", "pass `" + pass.name + "` reads image " + text(graph_.image(id)) + " before any pass wrote it",
+      fail("G005",
+           "pass `" + pass.name + "` reads image " + text(graph_.image(id)) + " before any pass wrote it",
            "clear it, or order the passes by what they read");
     const bool attached = std::find(pass.color.begin(), pass.color.end(), id) != pass.color.end() ||
                           (pass.depth == id && !pass.depth_read_only);
     if (attached)
-      fail("G004", "pass `" + pass.name + "` reads image " + text(graph_.image(id)) + " while it draws into it",
+      fail("G004",
+           "pass `" + pass.name + "` reads image " + text(graph_.image(id)) + " while it draws into it",
            "a feedback loop is undefined: copy the image first, or bind depth read-only");
   }
 
@@ -88,22 +100,25 @@ class Validator {
 
   void check_attachments(const Pass& pass) {
     if (pass.color.size() > kMaxColorTargets)
-      fail("G007", "pass `" + pass.name + "` has " + std::to_string(pass.color.size()) + " color attachments, at most " +
-                       std::to_string(kMaxColorTargets) + " are supported");
+      fail("G007", "pass `" + pass.name + "` has " + std::to_string(pass.color.size()) +
+                       " color attachments, at most " + std::to_string(kMaxColorTargets) + " are supported");
     for (const ImageId id : pass.color) {
       const ImageDesc& image = graph_.image(id);
       check_size(pass, image);
       if (info(image.format).is_depth)
-        fail("G003", "pass `" + pass.name + "` writes color to image " + text(image) + ", which has a depth format");
+        fail("G003",
+             "pass `" + pass.name + "` writes color to image " + text(image) + ", which has a depth format");
       if (image.samples != pass.samples && !features_.target_independent_raster)
-        fail("G002", "pass `" + pass.name + "` rasterizes " + std::to_string(pass.samples) + " samples into image " +
-                         text(image),
+        fail("G002",
+             "pass `" + pass.name + "` rasterizes " + std::to_string(pass.samples) + " samples into image " +
+                 text(image),
              "equal counts, or gpu.features.target_independent_raster = true");
       mark_written(id);
     }
     if (pass.depth) check_depth(pass);
     if (pass.kind == PassKind::full_screen) {
-      if (pass.fragment == nullptr) fail("G007", "full-screen pass `" + pass.name + "` has no fragment program");
+      if (pass.fragment == nullptr)
+        fail("G007", "full-screen pass `" + pass.name + "` has no fragment program");
       check_program(pass, pass.fragment, pass.state, 0);
     }
     for (const DrawBatch& batch : pass.batches) check_batch(pass, batch);
@@ -111,25 +126,29 @@ class Validator {
 
   void check_size(const Pass& pass, const ImageDesc& image) {
     if (image.width != pass.width || image.height != pass.height)
-      fail("G001", "pass `" + pass.name + "` of " + std::to_string(pass.width) + "x" + std::to_string(pass.height) +
-                       " pixels has attachment " + text(image));
+      fail("G001", "pass `" + pass.name + "` of " + std::to_string(pass.width) + "x" +
+                       std::to_string(pass.height) + " pixels has attachment " + text(image));
   }
 
   void check_depth(const Pass& pass) {
     const ImageDesc& image = graph_.image(pass.depth);
     check_size(pass, image);
     if (!info(image.format).is_depth)
-      fail("G003", "pass `" + pass.name + "` uses image " + text(image) + " as depth, which has a color format");
+      fail("G003",
+           "pass `" + pass.name + "` uses image " + text(image) + " as depth, which has a color format");
     if (image.samples != pass.samples)
-      fail("G002", "pass `" + pass.name + "` rasterizes " + std::to_string(pass.samples) + " samples, its depth image " +
-                       text(image) + " differs");
+      fail("G002", "pass `" + pass.name + "` rasterizes " + std::to_string(pass.samples) +
+                       " samples, its depth image " + text(image) + " differs");
     if (pass.depth_read_only && written_[static_cast<std::size_t>(pass.depth.index)] == 0)
-      fail("G005", "pass `" + pass.name + "` tests against depth image " + text(image) + " before any pass wrote it");
+      fail("G005",
+           "pass `" + pass.name + "` tests against depth image " + text(image) + " before any pass wrote it");
     const auto writes = [](const PipelineState& s) { return s.depth.write; };
-    const bool any_write = writes(pass.state) || std::any_of(pass.batches.begin(), pass.batches.end(),
-                                                             [&](const DrawBatch& b) { return writes(b.state); });
+    const bool any_write =
+        writes(pass.state) || std::any_of(pass.batches.begin(), pass.batches.end(),
+                                          [&](const DrawBatch& b) { return writes(b.state); });
     if (pass.depth_read_only && any_write)
-      fail("G004", "pass `" + pass.name + "` writes depth image " + text(image) + ", which it binds read-only");
+      fail("G004",
+           "pass `" + pass.name + "` writes depth image " + text(image) + ", which it binds read-only");
     if (!pass.depth_read_only) mark_written(pass.depth);
   }
 
@@ -171,7 +190,8 @@ class Validator {
     }
   }
 
-  void check_program(const Pass& pass, const FragmentProgram* program, const PipelineState& state, int varyings) {
+  void check_program(const Pass& pass, const FragmentProgram* program, const PipelineState& state,
+                     int varyings) {
     if (program == nullptr) return;
     if (pass.kind == PassKind::full_screen) check_state(pass, state);
     if (program->varying_scalars != varyings)
@@ -180,14 +200,16 @@ class Validator {
                        std::to_string(varyings));
     if (static_cast<std::size_t>(program->color_outputs) < pass.color.size())
       fail("G007", "pass `" + pass.name + "`: fragment program `" + program->name + "` writes " +
-                       std::to_string(program->color_outputs) + " colors for " + std::to_string(pass.color.size()) +
-                       " attachments");
+                       std::to_string(program->color_outputs) + " colors for " +
+                       std::to_string(pass.color.size()) + " attachments");
   }
 
   void check_compute(const Pass& pass) {
     if (pass.compute == nullptr) fail("G007", "compute pass `" + pass.name + "` has no program");
-    if (pass.groups_x < 1 || pass.groups_y < 1) fail("G001", "compute pass `" + pass.name + "` has no groups");
-    for (const ImageId id : pass.targets) mark_written(id);  // multisampled ones stand for flat buffers of samples
+    if (pass.groups_x < 1 || pass.groups_y < 1)
+      fail("G001", "compute pass `" + pass.name + "` has no groups");
+    for (const ImageId id : pass.targets)
+      mark_written(id);  // multisampled ones stand for flat buffers of samples
   }
 
   void check_transfer(const Pass& pass) {
@@ -198,13 +220,15 @@ class Validator {
     const ImageDesc& from = graph_.image(pass.source);
     const ImageDesc& to = graph_.image(pass.targets.front());
     if (from.width != to.width || from.height != to.height)
-      fail("G001", "pass `" + pass.name + "` from image " + text(from) + " to image " + text(to) + ": sizes differ");
+      fail("G001",
+           "pass `" + pass.name + "` from image " + text(from) + " to image " + text(to) + ": sizes differ");
     if (pass.kind == PassKind::resolve) {
       if (from.samples < 2 || to.samples != 1)
         fail("G009", "pass `" + pass.name + "` resolves image " + text(from) + " to image " + text(to) +
                          ": the source must be multisampled, the target not");
       if (info(from.format).is_integer || info(from.format).is_depth)
-        fail("G003", "pass `" + pass.name + "` resolves image " + text(from) + ", whose values cannot be averaged");
+        fail("G003",
+             "pass `" + pass.name + "` resolves image " + text(from) + ", whose values cannot be averaged");
     } else if (from.samples != to.samples || from.format != to.format) {
       fail("G009", "pass `" + pass.name + "` copies image " + text(from) + " to image " + text(to) +
                        ": formats and sample counts must be equal");
@@ -218,7 +242,8 @@ class Validator {
       return;
     }
     const ImageDesc& image = graph_.image(graph_.output());
-    if (image.samples != 1) fail("G008", "output image " + text(image) + " is multisampled", "resolve it first");
+    if (image.samples != 1)
+      fail("G008", "output image " + text(image) + " is multisampled", "resolve it first");
     if (info(image.format).is_depth) fail("G008", "output image " + text(image) + " has a depth format");
     if (written_[static_cast<std::size_t>(graph_.output().index)] == 0)
       fail("G005", "no pass writes the output image " + text(image));

@@ -23,8 +23,8 @@ RawImage decode_image(std::span<const std::uint8_t> bytes, const std::string& wh
 /// Reads a PNG, JPEG or EXR file to linear RGBA. Throws InputError.
 Image read_image(const std::string& path);
 
-/// .png: sRGB 8 bit, RGB; .exr: half-float linear RGB. Written beside the target and renamed, so that a file that
-/// exists is complete. Throws InputError if the folder cannot be written.
+/// .png: sRGB 8 bit, RGB; .exr: half-float linear RGB. Written beside the target and renamed, so that a file
+/// that exists is complete. Throws InputError if the folder cannot be written.
 void write_image(const Image& image, const std::string& path);
 
 }  // namespace hwsim::pipeline

@@ -10,28 +10,38 @@ namespace {
 // Distance to a plane, positive inside.
 double plane_distance(const std::array<double, 4>& p, int plane, const GuardBand& band) {
   switch (plane) {
-    case 0: return p[2];                       // near
-    case 1: return p[3] - p[2];                // far
-    case 2: return p[0] - band.min_x * p[3];
-    case 3: return band.max_x * p[3] - p[0];
-    case 4: return p[1] - band.min_y * p[3];
-    default: return band.max_y * p[3] - p[1];
+    case 0:
+      return p[2];  // near
+    case 1:
+      return p[3] - p[2];  // far
+    case 2:
+      return p[0] - band.min_x * p[3];
+    case 3:
+      return band.max_x * p[3] - p[0];
+    case 4:
+      return p[1] - band.min_y * p[3];
+    default:
+      return band.max_y * p[3] - p[1];
   }
 }
 
-// Always from the inside vertex to the outside one, so that two triangles that share an edge cut it at the same point.
+// Always from the inside vertex to the outside one, so that two triangles that share an edge cut it at the
+// same point.
 ClipVertex cut(const ClipVertex& inside, const ClipVertex& outside, double d_inside, double d_outside) {
   const double t = d_inside / (d_inside - d_outside);
   ClipVertex v;
-  for (std::size_t i = 0; i < 4; ++i) v.position[i] = inside.position[i] + (outside.position[i] - inside.position[i]) * t;
-  for (std::size_t i = 0; i < 3; ++i) v.weights[i] = inside.weights[i] + (outside.weights[i] - inside.weights[i]) * t;
+  for (std::size_t i = 0; i < 4; ++i)
+    v.position[i] = inside.position[i] + (outside.position[i] - inside.position[i]) * t;
+  for (std::size_t i = 0; i < 3; ++i)
+    v.weights[i] = inside.weights[i] + (outside.weights[i] - inside.weights[i]) * t;
   return v;
 }
 
 }  // namespace
 
 GuardBand guard_band(int width_px, int height_px) {
-  // x_screen = (x/w / 2 + 1/2) * width; one pixel of margin for snapping. y points up in clip space, down on screen.
+  // x_screen = (x/w / 2 + 1/2) * width; one pixel of margin for snapping. y points up in clip space, down on
+  // screen.
   const auto to_ndc = [](double px, int size) { return 2.0 * px / size - 1.0; };
   return {to_ndc(kGuardBandMinPx + 1, width_px), to_ndc(kGuardBandMaxPx - 1, width_px),
           -to_ndc(kGuardBandMaxPx - 1, height_px), -to_ndc(kGuardBandMinPx + 1, height_px)};

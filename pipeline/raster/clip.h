@@ -5,8 +5,8 @@
 namespace hwsim::pipeline {
 
 struct ClipVertex {
-  std::array<double, 4> position;          ///< x, y, z, w; inside: 0 <= z <= w, |x|, |y| within the band
-  std::array<double, 3> weights{};         ///< of the triangle's three vertices; sum 1
+  std::array<double, 4> position;   ///< x, y, z, w; inside: 0 <= z <= w, |x|, |y| within the band
+  std::array<double, 3> weights{};  ///< of the triangle's three vertices; sum 1
 };
 
 /// Limits of x/w and y/w that keep screen coordinates inside the guard band.
@@ -17,7 +17,8 @@ GuardBand guard_band(int width_px, int height_px);
 
 inline constexpr int kMaxClippedVertices = 9;  ///< three and one for each plane
 
-/// The part of a triangle inside; returns the number of vertices written (0 or 3..9), in order around the polygon.
+/// The part of a triangle inside; returns the number of vertices written (0 or 3..9), in order around the
+/// polygon.
 int clip_triangle(const std::array<ClipVertex, 3>& triangle, const GuardBand& band,
                   std::array<ClipVertex, kMaxClippedVertices>& out);
 

@@ -41,8 +41,8 @@ HWY_INLINE void put_mask(LaneM m, int v, std::uint64_t& word) {
   word |= static_cast<std::uint64_t>(mask_bits(m)) << (v * kVectorLanes);
 }
 
-/// The covered samples of a tile: lanes[s] at sample s. Sums are taken while the masks are in registers: reading them
-/// back at once, eight bytes stored by thirty-two loaded, stalls on store forwarding.
+/// The covered samples of a tile: lanes[s] at sample s. Sums are taken while the masks are in registers:
+/// reading them back at once, eight bytes stored by thirty-two loaded, stalls on store forwarding.
 struct SampleMasks {
   std::uint64_t lanes[kMaxSamples];
   std::uint64_t any_lane = 0;  ///< union over the samples
@@ -65,8 +65,8 @@ struct SampleMasks {
 /// One triangle against the tiles of a bin.
 class TileCoverage {
  public:
-  TileCoverage(const RasterTriangle& t, std::span<const SamplePosition> positions, int min_x, int min_y, int max_x,
-               int max_y)
+  TileCoverage(const RasterTriangle& t, std::span<const SamplePosition> positions, int min_x, int min_y,
+               int max_x, int max_y)
       : t_(t), positions_(positions) {
     // Samples of a tile lie between 8 + min and 8 + 112 + max sixteenths of a pixel from its corner.
     for (int i = 0; i < 3; ++i) {
@@ -96,9 +96,12 @@ class TileCoverage {
   void masks(SampleMasks& masks) {
     prepare_offsets();
     switch (edge_count_) {
-      case 1: return masks_of<1>(masks);
-      case 2: return masks_of<2>(masks);
-      default: return masks_of<3>(masks);
+      case 1:
+        return masks_of<1>(masks);
+      case 2:
+        return masks_of<2>(masks);
+      default:
+        return masks_of<3>(masks);
     }
   }
 
@@ -128,7 +131,8 @@ class TileCoverage {
       std::uint64_t word = 0;
       for (int v = 0; v < kBlockVectors; ++v) {
         LaneM inside = load(offsets_[edge_[0]] + v * kVectorLanes) > threshold[0];
-        for (int e = 1; e < kEdges; ++e) inside = inside & (load(offsets_[edge_[e]] + v * kVectorLanes) > threshold[e]);
+        for (int e = 1; e < kEdges; ++e)
+          inside = inside & (load(offsets_[edge_[e]] + v * kVectorLanes) > threshold[e]);
         put_mask(inside, v, word);
       }
       masks.set(s, word);

@@ -11,18 +11,33 @@ constexpr std::array<P, 1> k1 = {{{0, 0}}};
 constexpr std::array<P, 2> k2 = {{{4, 4}, {-4, -4}}};
 constexpr std::array<P, 4> k4 = {{{-2, -6}, {6, -2}, {-6, 2}, {2, 6}}};
 constexpr std::array<P, 8> k8 = {{{1, -3}, {-1, 3}, {5, 1}, {-3, -5}, {-5, 5}, {-7, -1}, {3, 7}, {7, -7}}};
-constexpr std::array<P, 16> k16 = {{{1, 1}, {-1, -3}, {-3, 2}, {4, -1}, {-5, -2}, {2, 5}, {5, 3}, {3, -5},
-                                    {-2, 6}, {0, -7}, {-4, -6}, {-6, 4}, {-8, 0}, {7, -4}, {6, 7}, {-7, -8}}};
+constexpr std::array<P, 16> k16 = {{{1, 1},
+                                    {-1, -3},
+                                    {-3, 2},
+                                    {4, -1},
+                                    {-5, -2},
+                                    {2, 5},
+                                    {5, 3},
+                                    {3, -5},
+                                    {-2, 6},
+                                    {0, -7},
+                                    {-4, -6},
+                                    {-6, 4},
+                                    {-8, 0},
+                                    {7, -4},
+                                    {6, 7},
+                                    {-7, -8}}};
 
-// Layer l = (i, j) of four 8x passes samples at base + (8 i, 8 j), base being the 8x pattern squeezed into the top left
-// quarter (techniques 1.4).
+// Layer l = (i, j) of four 8x passes samples at base + (8 i, 8 j), base being the 8x pattern squeezed into
+// the top left quarter (techniques 1.4).
 constexpr std::array<P, 32> make_32() {
   std::array<P, 32> positions{};
   for (int layer = 0; layer < 4; ++layer) {
     for (int s = 0; s < 8; ++s) {
       const int x = (k8[static_cast<std::size_t>(s)].x + 7) / 2 - 8 + 8 * (layer & 1);
       const int y = (k8[static_cast<std::size_t>(s)].y + 7) / 2 - 8 + 8 * (layer >> 1);
-      positions[static_cast<std::size_t>(layer * 8 + s)] = {static_cast<std::int8_t>(x), static_cast<std::int8_t>(y)};
+      positions[static_cast<std::size_t>(layer * 8 + s)] = {static_cast<std::int8_t>(x),
+                                                            static_cast<std::int8_t>(y)};
     }
   }
   return positions;
@@ -32,13 +47,20 @@ constexpr std::array<P, 32> k32 = make_32();
 
 std::span<const SamplePosition> standard_sample_positions(int samples) {
   switch (samples) {
-    case 1: return k1;
-    case 2: return k2;
-    case 4: return k4;
-    case 8: return k8;
-    case 16: return k16;
-    case 32: return k32;
-    default: throw std::invalid_argument("no standard pattern of " + std::to_string(samples) + " samples");
+    case 1:
+      return k1;
+    case 2:
+      return k2;
+    case 4:
+      return k4;
+    case 8:
+      return k8;
+    case 16:
+      return k16;
+    case 32:
+      return k32;
+    default:
+      throw std::invalid_argument("no standard pattern of " + std::to_string(samples) + " samples");
   }
 }
 

@@ -20,8 +20,8 @@ void set_edge(const ScreenVertex& p, const ScreenVertex& q, int i, RasterTriangl
   t.c[i] = floor_div16(c);  // exact: 16 (aX + bY) + c >= 0  <=>  aX + bY + floor(c / 16) >= 0
 }
 
-// A pixel is touched iff no edge excludes all of it: move each edge outward by its support over the pixel square, and
-// treat touching the boundary as touching (conservative overestimation).
+// A pixel is touched iff no edge excludes all of it: move each edge outward by its support over the pixel
+// square, and treat touching the boundary as touching (conservative overestimation).
 void grow_edges(RasterTriangle& t) {
   for (int i = 0; i < 3; ++i) {
     const std::int64_t support = 8 * (std::int64_t{std::abs(t.a[i])} + std::abs(t.b[i]));
@@ -29,8 +29,10 @@ void grow_edges(RasterTriangle& t) {
   }
 }
 
-// First pixel column (or row) with a sample at or right of `low`, and last with one at or left of `high`; 1/256 px.
-void sample_bounds(std::int32_t low, std::int32_t high, int sample_low, int sample_high, int& first, int& last) {
+// First pixel column (or row) with a sample at or right of `low`, and last with one at or left of `high`;
+// 1/256 px.
+void sample_bounds(std::int32_t low, std::int32_t high, int sample_low, int sample_high, int& first,
+                   int& last) {
   // pixel p has samples from 256 p + 128 + 16 sample_low to 256 p + 128 + 16 sample_high
   const std::int32_t to_last_sample = 128 + 16 * sample_high;
   const std::int32_t to_first_sample = 128 + 16 * sample_low;
@@ -64,7 +66,7 @@ bool set_bounds(const ScreenVertex (&v)[3], const SetupRules& rules, RasterTrian
 }
 
 struct Gradients {
-  double x0, y0;                // vertex 0 relative to the reference pixel, px
+  double x0, y0;                      // vertex 0 relative to the reference pixel, px
   double l1_dx, l1_dy, l2_dx, l2_dy;  // of the barycentric coordinates, per px
 };
 
@@ -97,13 +99,15 @@ void set_planes(const ScreenVertex& v0, const ScreenVertex& v1, const ScreenVert
 }  // namespace
 
 SetupResult set_up_triangle(const ScreenVertex (&v)[3], const SetupRules& rules, RasterTriangle& t) {
-  const std::int64_t area2 = std::int64_t{v[1].x - v[0].x} * (v[2].y - v[0].y) -
-                             std::int64_t{v[2].x - v[0].x} * (v[1].y - v[0].y);
+  const std::int64_t area2 =
+      std::int64_t{v[1].x - v[0].x} * (v[2].y - v[0].y) - std::int64_t{v[2].x - v[0].x} * (v[1].y - v[0].y);
   if (area2 == 0) return SetupResult::zero_area;
   t.front_facing = area2 < 0;  // y down: counterclockwise with y up is a negative area
-  if ((rules.cull_back && !t.front_facing) || (rules.cull_front && t.front_facing)) return SetupResult::backface;
+  if ((rules.cull_back && !t.front_facing) || (rules.cull_front && t.front_facing))
+    return SetupResult::backface;
   if (!set_bounds(v, rules, t)) return SetupResult::sample_miss;
-  const int second = area2 > 0 ? 1 : 2;  // clockwise on screen: the inside is where the edge functions are positive
+  const int second =
+      area2 > 0 ? 1 : 2;  // clockwise on screen: the inside is where the edge functions are positive
   const int third = 3 - second;
   set_edge(v[0], v[second], 0, t);
   set_edge(v[second], v[third], 1, t);

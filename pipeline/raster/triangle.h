@@ -6,11 +6,13 @@ namespace hwsim::pipeline {
 
 inline constexpr int kSubpixelBits = 8;  // 24.8 fixed point, 1/256 pixel
 inline constexpr int kSubpixelUnits = 1 << kSubpixelBits;
-// Vertices beyond these are clipped. A difference of two coordinates is below 2^15 px = 2^23 units, so for an edge
-// function that changes sign inside an 8x8 tile |E| <= (|a| + |b|) * 127 < 2^24 * 127 < 2^31 in steps of 1/16 px.
+// Vertices beyond these are clipped. A difference of two coordinates is below 2^15 px = 2^23 units, so for an
+// edge function that changes sign inside an 8x8 tile |E| <= (|a| + |b|) * 127 < 2^24 * 127 < 2^31 in steps of
+// 1/16 px.
 inline constexpr int kGuardBandMinPx = -8192;
 inline constexpr int kGuardBandMaxPx = 24575;
-static_assert((std::int64_t{2} * (kGuardBandMaxPx - kGuardBandMinPx) * kSubpixelUnits) * 127 < (std::int64_t{1} << 31));
+static_assert((std::int64_t{2} * (kGuardBandMaxPx - kGuardBandMinPx) * kSubpixelUnits) * 127 <
+              (std::int64_t{1} << 31));
 
 /// A vertex after the viewport transform.
 struct ScreenVertex {
@@ -26,19 +28,19 @@ struct PlaneEquation {
 };
 
 struct RasterTriangle {
-  // Sample at (X, Y) sixteenths of a pixel is inside iff a*X + b*Y + c >= 0 for all three edges. The top-left rule and
-  // the rounding from 1/256 to 1/16 px are inside c.
+  // Sample at (X, Y) sixteenths of a pixel is inside iff a*X + b*Y + c >= 0 for all three edges. The top-left
+  // rule and the rounding from 1/256 to 1/16 px are inside c.
   std::int32_t a[3], b[3];
   std::int64_t c[3];
   std::int16_t min_x, min_y, max_x, max_y;  ///< pixels whose samples can be inside, clipped to the viewport
   std::int32_t reference_x, reference_y;    ///< pixel
   PlaneEquation z;
-  PlaneEquation inv_w;      ///< 1/w
-  PlaneEquation l1_w, l2_w; ///< barycentric coordinates of vertices 1 and 2, over w
-  std::uint32_t vertex[3];  ///< indices into the segment's varyings
-  std::uint32_t draw;       ///< index into the pass's flat list of draws
-  std::uint32_t chunk;      ///< index of the chunk of work
-  std::uint32_t primitive;  ///< number of the triangle in the pass, in submission order
+  PlaneEquation inv_w;       ///< 1/w
+  PlaneEquation l1_w, l2_w;  ///< barycentric coordinates of vertices 1 and 2, over w
+  std::uint32_t vertex[3];   ///< indices into the segment's varyings
+  std::uint32_t draw;        ///< index into the pass's flat list of draws
+  std::uint32_t chunk;       ///< index of the chunk of work
+  std::uint32_t primitive;   ///< number of the triangle in the pass, in submission order
   bool front_facing;
 };
 
@@ -46,7 +48,7 @@ enum class SetupResult { drawn, backface, zero_area, sample_miss };
 
 struct SetupRules {
   bool cull_back = false, cull_front = false;
-  int width_px = 0, height_px = 0;  ///< viewport
+  int width_px = 0, height_px = 0;                                             ///< viewport
   int sample_min_x = 0, sample_min_y = 0, sample_max_x = 0, sample_max_y = 0;  ///< of the pattern, 1/16 px
   bool conservative = false;
 };

@@ -10,8 +10,9 @@ struct SceneLoadOptions {
   std::uint64_t max_drawn_triangles = 200'000'000;
 };
 
-/// Reads a .gltf or .glb file. Throws InputError (codes S0xx) naming the file, the element ("meshes[3].primitives[0]
-/// attribute POSITION") and the remedy; never returns a scene with an index out of range or a value that is not finite.
+/// Reads a .gltf or .glb file. Throws InputError (codes S0xx) naming the file, the element
+/// ("meshes[3].primitives[0] attribute POSITION") and the remedy; never returns a scene with an index out of
+/// range or a value that is not finite.
 Scene load_gltf(const std::string& path, const SceneLoadOptions& options = {});
 
 }  // namespace hwsim::pipeline

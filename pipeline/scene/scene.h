@@ -50,7 +50,8 @@ enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 enum class ShadingModel : std::uint8_t { blinn_phong, ggx, unlit };
 
 /// glTF metallic-roughness, from which both shading models derive their parameters (techniques 0.5):
-/// alpha = roughness^2, exponent = 2/alpha^2 - 2, k_s = lerp(0.04, base, metallic), albedo = base (1 - metallic).
+/// alpha = roughness^2, exponent = 2/alpha^2 - 2, k_s = lerp(0.04, base, metallic), albedo = base (1 -
+/// metallic).
 struct Material {
   std::string name;
   glm::vec4 base_color{1.0f};
@@ -59,23 +60,26 @@ struct Material {
   glm::vec3 emissive{0.0f};  ///< times KHR_materials_emissive_strength
   float normal_scale = 1.0f;
   float occlusion_strength = 1.0f;
-  TextureRef base_color_texture, metallic_roughness_texture, normal_texture, emissive_texture, occlusion_texture;
+  TextureRef base_color_texture, metallic_roughness_texture, normal_texture, emissive_texture,
+      occlusion_texture;
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;
   bool double_sided = false;
   ShadingModel model = ShadingModel::blinn_phong;
 };
 
-/// Positions are on the surface. A wire's vertex has its center at position - radius * normal, its axis is the tangent;
-/// meshes without wires leave `radius` empty.
+/// Positions are on the surface. A wire's vertex has its center at position - radius * normal, its axis is
+/// the tangent; meshes without wires leave `radius` empty.
 struct Mesh {
   std::string name;
   std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;   ///< unit length, same count as positions (generated where the file has none)
-  std::vector<glm::vec4> tangents;  ///< xyz unit, w = +-1 handedness; empty unless a normal texture needs them
-  std::vector<glm::vec2> uv0, uv1;  ///< empty, or one a vertex
-  std::vector<glm::vec4> colors;    ///< linear, empty, or one a vertex
-  std::vector<float> radius;        ///< wires only: empty, or one a vertex
+  std::vector<glm::vec3>
+      normals;  ///< unit length, same count as positions (generated where the file has none)
+  std::vector<glm::vec4>
+      tangents;  ///< xyz unit, w = +-1 handedness; empty unless a normal texture needs them
+  std::vector<glm::vec2> uv0, uv1;     ///< empty, or one a vertex
+  std::vector<glm::vec4> colors;       ///< linear, empty, or one a vertex
+  std::vector<float> radius;           ///< wires only: empty, or one a vertex
   std::vector<std::uint32_t> indices;  ///< triangles, three each; every index < positions.size()
 
   struct Part {
@@ -97,8 +101,8 @@ struct Instance {
 
 enum class LightKind : std::uint8_t { directional, point, spot };
 
-/// Directional: illuminance in lux scaled so that 1 lights a white Lambert surface to 1 (no 1/pi, techniques 0.5).
-/// Point and spot: the same at one meter, times 1/d^2 windowed to zero at range_m.
+/// Directional: illuminance in lux scaled so that 1 lights a white Lambert surface to 1 (no 1/pi, techniques
+/// 0.5). Point and spot: the same at one meter, times 1/d^2 windowed to zero at range_m.
 struct Light {
   LightKind kind = LightKind::directional;
   glm::vec3 color{1.0f};  ///< color times intensity
@@ -133,8 +137,8 @@ struct Scene {
   std::vector<Camera> cameras;    ///< at least one: a default one that frames the scene
   glm::vec3 ambient{0.05f};
   glm::vec3 background{0.2f, 0.3f, 0.45f};  ///< linear
-  std::vector<Diagnostic> notes;  ///< what the loader ignored, generated or clamped
-  std::string content_hash;       ///< hex, of everything that was read
+  std::vector<Diagnostic> notes;            ///< what the loader ignored, generated or clamped
+  std::string content_hash;                 ///< hex, of everything that was read
 };
 
 struct SceneStats {

@@ -29,11 +29,13 @@ std::span<const GeneratorInfo> generators();
 void write_generated_scene(const std::string& name, const std::map<std::string, double>& parameters,
                            const std::string& path);
 
-/// Loads a file (a name that ends in .gltf or .glb), or generates a scene, writes it below `cache_directory` (created
-/// if missing, files replaced atomically) and loads it by the same loader. Throws InputError with the nearest names.
+/// Loads a file (a name that ends in .gltf or .glb), or generates a scene, writes it below `cache_directory`
+/// (created if missing, files replaced atomically) and loads it by the same loader. Throws InputError with
+/// the nearest names.
 Scene open_scene(const std::string& name_or_path, const std::string& cache_directory);
 
-/// $HWSIM_CACHE, else $XDG_CACHE_HOME/hwsim, else ~/.cache/hwsim, else a folder of the system's temporary directory.
+/// $HWSIM_CACHE, else $XDG_CACHE_HOME/hwsim, else ~/.cache/hwsim, else a folder of the system's temporary
+/// directory.
 std::string default_cache_directory();
 
 }  // namespace hwsim::pipeline

@@ -1,5 +1,5 @@
-// Storage buffers of a pass, word by word, lanes in order: shared by fragment and compute contexts. An index outside
-// the buffer reads 0 and writes nothing, as robust buffer access has it. Per-target include guard.
+// Storage buffers of a pass, word by word, lanes in order: shared by fragment and compute contexts. An index
+// outside the buffer reads 0 and writes nothing, as robust buffer access has it. Per-target include guard.
 #include "pipeline/emulate/fragment_batch.h"
 #include "pipeline/shade/lanes-inl.h"
 
@@ -24,7 +24,8 @@ class BufferAccess {
     store(index, at);
     for (std::uint32_t bits = mask_bits(mask); bits != 0; bits &= bits - 1) {
       const int lane = __builtin_ctz(bits);
-      if (holds(at[lane])) out[lane] = static_cast<std::int32_t>(__atomic_load_n(words_ + at[lane], __ATOMIC_RELAXED));
+      if (holds(at[lane]))
+        out[lane] = static_cast<std::int32_t>(__atomic_load_n(words_ + at[lane], __ATOMIC_RELAXED));
     }
     return load(out);
   }
@@ -35,7 +36,8 @@ class BufferAccess {
     store(value, from);
     for (std::uint32_t bits = mask_bits(mask); bits != 0; bits &= bits - 1) {
       const int lane = __builtin_ctz(bits);
-      if (holds(at[lane])) __atomic_store_n(words_ + at[lane], static_cast<std::uint32_t>(from[lane]), __ATOMIC_RELAXED);
+      if (holds(at[lane]))
+        __atomic_store_n(words_ + at[lane], static_cast<std::uint32_t>(from[lane]), __ATOMIC_RELAXED);
     }
   }
 

@@ -66,7 +66,8 @@ class ComputeLanes {
     for (std::uint32_t rest = bits; rest != 0; rest &= rest - 1) {
       const int lane = __builtin_ctz(rest);
       for (int w = 0; w < image.words; ++w)
-        image.texels[image.word_index(px[lane], py[lane], ps[lane], w)] = static_cast<std::uint32_t>(words[w][lane]);
+        image.texels[image.word_index(px[lane], py[lane], ps[lane], w)] =
+            static_cast<std::uint32_t>(words[w][lane]);
     }
     group_.counters->mem.storage_write_bytes +=
         static_cast<std::uint64_t>(__builtin_popcount(bits)) * info(image.format).bytes;

@@ -1,11 +1,11 @@
 // The counting context: a fragment shader run once on it yields the operations of each of its blocks.
-// Every branch is taken and every loop body runs once; how often lanes go through is counted during emulation.
-// Per-target include guard, see shade/lanes-inl.h.
+// Every branch is taken and every loop body runs once; how often lanes go through is counted during
+// emulation. Per-target include guard, see shade/lanes-inl.h.
 #include <hwy/highway.h>
 #include <algorithm>
 #include <string>
-#include "pipeline/shade/count_lane.h"
 #include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/shade/count_lane.h"
 #include "pipeline/shade/vec-inl.h"
 #if defined(HWSIM_PIPELINE_SHADE_COUNT_FRAGMENT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_PIPELINE_SHADE_COUNT_FRAGMENT_INL_H_
@@ -57,9 +57,13 @@ class CountFragment {
   int image_height(int) const { return 1; }
 
   template <class Body>
-  void branch(int block, M, Body&& body) { enter(block, body); }
+  void branch(int block, M, Body&& body) {
+    enter(block, body);
+  }
   template <class Body>
-  void uniform_branch(int block, bool, Body&& body) { enter(block, body); }
+  void uniform_branch(int block, bool, Body&& body) {
+    enter(block, body);
+  }
   template <class Body>
   void loop(int block, int, M, Body&& body) {
     enter(block, [&]() HWY_ATTR { body(0); });

@@ -1,6 +1,7 @@
 #pragma once
-// The counting lane type: shaders instantiated on it charge their operations to the current block instead of running.
-// A multiplication whose result goes straight into an addition is one fused operation, as every GPU issues it.
+// The counting lane type: shaders instantiated on it charge their operations to the current block instead of
+// running. A multiplication whose result goes straight into an addition is one fused operation, as every GPU
+// issues it.
 #include <cstdint>
 
 #include "pipeline/shade/program.h"
@@ -88,7 +89,9 @@ inline CountF rsqrt(CountF a) {
 }
 inline CountF exp2(CountF a) { return rsqrt(a); }
 inline CountF log2(CountF a) { return rsqrt(a); }
-inline CountM operator<(CountF a, CountF b) { return count_detail::compare(count_detail::either(a.ops, b.ops)); }
+inline CountM operator<(CountF a, CountF b) {
+  return count_detail::compare(count_detail::either(a.ops, b.ops));
+}
 inline CountM operator<=(CountF a, CountF b) { return a < b; }
 inline CountM operator>(CountF a, CountF b) { return a < b; }
 inline CountM operator>=(CountF a, CountF b) { return a < b; }
@@ -116,12 +119,18 @@ inline CountI operator&(CountI a, CountI b) { return count_detail::int_alu(a, b)
 inline CountI operator|(CountI a, CountI b) { return count_detail::int_alu(a, b); }
 inline CountI operator^(CountI a, CountI b) { return count_detail::int_alu(a, b); }
 template <int kBits>
-CountI shift_left(CountI a) { return count_detail::int_alu(a, a); }
+CountI shift_left(CountI a) {
+  return count_detail::int_alu(a, a);
+}
 template <int kBits>
-CountI shift_right(CountI a) { return count_detail::int_alu(a, a); }
+CountI shift_right(CountI a) {
+  return count_detail::int_alu(a, a);
+}
 inline CountI min(CountI a, CountI b) { return count_detail::int_alu(a, b); }
 inline CountI max(CountI a, CountI b) { return count_detail::int_alu(a, b); }
-inline CountM operator<(CountI a, CountI b) { return count_detail::compare(count_detail::either(a.ops, b.ops)); }
+inline CountM operator<(CountI a, CountI b) {
+  return count_detail::compare(count_detail::either(a.ops, b.ops));
+}
 inline CountM operator>(CountI a, CountI b) { return a < b; }
 inline CountM operator==(CountI a, CountI b) { return a < b; }
 inline CountM operator!=(CountI a, CountI b) { return a < b; }

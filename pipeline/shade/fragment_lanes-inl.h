@@ -29,15 +29,18 @@ HWY_INLINE void count_trip(BlockTrips& blocks, int block, int first_lane, LaneM 
 
 /// Reads texels of the pass's image slots: shared by fragment and compute contexts. Coordinates are clamped.
 HWY_INLINE Vec4<LaneF> load_texel(const GpuImage& image, LaneI x, LaneI y, LaneI sample) {
-  const LaneI cx = min(max(x, LaneI(0)), LaneI(image.width - 1)), cy = min(max(y, LaneI(0)), LaneI(image.height - 1));
+  const LaneI cx = min(max(x, LaneI(0)), LaneI(image.width - 1)),
+              cy = min(max(y, LaneI(0)), LaneI(image.height - 1));
   const LaneI block = shift_right<3>(cy) * LaneI(image.blocks_x) + shift_right<3>(cx);
   const LaneI lane = (cx & LaneI(1)) | shift_left<1>(cy & LaneI(1)) | shift_left<1>(cx & LaneI(2)) |
-                     shift_left<2>(cy & LaneI(2)) | shift_left<2>(cx & LaneI(4)) | shift_left<3>(cy & LaneI(4));
+                     shift_left<2>(cy & LaneI(2)) | shift_left<2>(cx & LaneI(4)) |
+                     shift_left<3>(cy & LaneI(4));
   const LaneI first = block * LaneI(static_cast<std::int32_t>(image.block_words())) +
                       shift_left<6>(sample * LaneI(image.words)) + lane;
   LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
   const auto* texels = reinterpret_cast<const std::int32_t*>(image.texels.data());
-  for (int word = 0; word < image.words; ++word) words[word] = gather(texels, first + LaneI(word * kBlockLanes));
+  for (int word = 0; word < image.words; ++word)
+    words[word] = gather(texels, first + LaneI(word * kBlockLanes));
   return decode_texel<LaneF, LaneI>(image.format, words, srgb_decode_table().data());
 }
 
@@ -48,7 +51,8 @@ class FragmentLanes {
   using M = LaneM;
 
   FragmentLanes(FragmentBatch& batch, int first_lane)
-      : batch_(batch), first_(first_lane),
+      : batch_(batch),
+        first_(first_lane),
         valid_(mask_from_bits(batch.valid_lanes, first_lane)),
         live_(valid_),
         active_(mask_from_bits(batch.active_lanes, first_lane)) {
@@ -88,7 +92,8 @@ class FragmentLanes {
     const TextureSampler<F, I, M> sampler(*texture, batch_.texture_tracker, live_, first_);
     const F uc = interpolate(k, batch_.b1_center.data(), batch_.b2_center.data());
     const F vc = interpolate(k + 1, batch_.b1_center.data(), batch_.b2_center.data());
-    return sampler.sample(attr(k), attr(k + 1), ddx(uc), ddx(vc), ddy(uc), ddy(vc), batch_.tex_bilinear_probes);
+    return sampler.sample(attr(k), attr(k + 1), ddx(uc), ddx(vc), ddy(uc), ddy(vc),
+                          batch_.tex_bilinear_probes);
   }
 
   /// Texel (x, y) of the pass's image slot, unfiltered; coordinates are clamped to the image.
@@ -116,10 +121,12 @@ class FragmentLanes {
   }
 
   int image_width(int slot) const { return batch_.resources->images[static_cast<std::size_t>(slot)]->width; }
-  int image_height(int slot) const { return batch_.resources->images[static_cast<std::size_t>(slot)]->height; }
+  int image_height(int slot) const {
+    return batch_.resources->images[static_cast<std::size_t>(slot)]->height;
+  }
 
-  /// Runs body() if a lane of `mask` is left, and charges those lanes with the block's operations. What the body does
-  /// is charged to the same lanes: the others are there because registers are wide.
+  /// Runs body() if a lane of `mask` is left, and charges those lanes with the block's operations. What the
+  /// body does is charged to the same lanes: the others are there because registers are wide.
   template <class Body>
   HWY_INLINE void branch(int block, M mask, Body&& body) {
     const M outer = live_;

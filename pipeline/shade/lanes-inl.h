@@ -73,9 +73,13 @@ HWY_INLINE LaneI operator&(LaneI a, LaneI b) { return LaneI(hn::And(a.v, b.v)); 
 HWY_INLINE LaneI operator|(LaneI a, LaneI b) { return LaneI(hn::Or(a.v, b.v)); }
 HWY_INLINE LaneI operator^(LaneI a, LaneI b) { return LaneI(hn::Xor(a.v, b.v)); }
 template <int kBits>
-HWY_INLINE LaneI shift_left(LaneI a) { return LaneI(hn::ShiftLeft<kBits>(a.v)); }
+HWY_INLINE LaneI shift_left(LaneI a) {
+  return LaneI(hn::ShiftLeft<kBits>(a.v));
+}
 template <int kBits>
-HWY_INLINE LaneI shift_right(LaneI a) { return LaneI(hn::ShiftRight<kBits>(a.v)); }
+HWY_INLINE LaneI shift_right(LaneI a) {
+  return LaneI(hn::ShiftRight<kBits>(a.v));
+}
 HWY_INLINE LaneI min(LaneI a, LaneI b) { return LaneI(hn::Min(a.v, b.v)); }
 HWY_INLINE LaneI max(LaneI a, LaneI b) { return LaneI(hn::Max(a.v, b.v)); }
 HWY_INLINE LaneM operator<(LaneI a, LaneI b) { return {hn::RebindMask(DF(), hn::Lt(a.v, b.v))}; }
@@ -83,7 +87,8 @@ HWY_INLINE LaneM operator>(LaneI a, LaneI b) { return {hn::RebindMask(DF(), hn::
 HWY_INLINE LaneM operator==(LaneI a, LaneI b) { return {hn::RebindMask(DF(), hn::Eq(a.v, b.v))}; }
 HWY_INLINE LaneM operator!=(LaneI a, LaneI b) { return !(a == b); }
 HWY_INLINE LaneI to_int(LaneF a) { return LaneI(hn::ConvertTo(DI(), a.v)); }
-/// To the nearest integer, ties to even, for |a| < 2^31 (hn::NearestInt also mends overflow, at three more operations).
+/// To the nearest integer, ties to even, for |a| < 2^31 (hn::NearestInt also mends overflow, at three more
+/// operations).
 HWY_INLINE LaneI round_to_int(LaneF a) {
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
   return LaneI(VI{_mm512_cvtps_epi32(a.v.raw)});
@@ -102,13 +107,17 @@ HWY_INLINE LaneF load(const float* p) { return LaneF(hn::LoadU(DF(), p)); }
 HWY_INLINE LaneI load(const std::int32_t* p) { return LaneI(hn::LoadU(DI(), p)); }
 HWY_INLINE void store(LaneF a, float* p) { hn::StoreU(a.v, DF(), p); }
 HWY_INLINE void store(LaneI a, std::int32_t* p) { hn::StoreU(a.v, DI(), p); }
-HWY_INLINE LaneF gather(const float* base, LaneI index) { return LaneF(hn::GatherIndex(DF(), base, index.v)); }
-HWY_INLINE LaneI gather(const std::int32_t* base, LaneI index) { return LaneI(hn::GatherIndex(DI(), base, index.v)); }
+HWY_INLINE LaneF gather(const float* base, LaneI index) {
+  return LaneF(hn::GatherIndex(DF(), base, index.v));
+}
+HWY_INLINE LaneI gather(const std::int32_t* base, LaneI index) {
+  return LaneI(hn::GatherIndex(DI(), base, index.v));
+}
 
 HWY_INLINE LaneF lookup(const float* table, LaneI index) { return gather(table, index); }
 
-// Between masks and bits. AVX-512 masks are bits: going through memory, as the portable functions do, stalls on
-// store forwarding (it was a tenth of the raster time).
+// Between masks and bits. AVX-512 masks are bits: going through memory, as the portable functions do, stalls
+// on store forwarding (it was a tenth of the raster time).
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
 /// Bit i of the result is lane i.
 HWY_INLINE std::uint32_t mask_bits(LaneM m) { return m.v.raw; }

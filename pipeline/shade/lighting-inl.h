@@ -1,6 +1,5 @@
-// Shading models (techniques 0.5) and direct lighting, for every lane type: the emulator's registers, the counting type,
-// and the scalar of the ray-traced reference.
-// Per-target include guard, see shade/lanes-inl.h.
+// Shading models (techniques 0.5) and direct lighting, for every lane type: the emulator's registers, the
+// counting type, and the scalar of the ray-traced reference. Per-target include guard, see shade/lanes-inl.h.
 #include <hwy/highway.h>
 
 #include "pipeline/shade/codec-inl.h"
@@ -22,17 +21,20 @@ namespace hwsim::pipeline::HWY_NAMESPACE {
 template <class F>
 struct Surface {
   Vec3<F> position, normal, to_eye;
-  Vec3<F> albedo;      ///< diffuse reflectance
-  Vec3<F> specular;    ///< k_s, reflectance at normal incidence
-  F exponent;          ///< Blinn-Phong
-  F alpha;             ///< GGX, roughness squared
+  Vec3<F> albedo;    ///< diffuse reflectance
+  Vec3<F> specular;  ///< k_s, reflectance at normal incidence
+  F exponent;        ///< Blinn-Phong
+  F alpha;           ///< GGX, roughness squared
   Vec3<F> emissive;
 };
 
 template <class F>
-Vec3<F> broadcast(const glm::vec3& v) { return {F(v.x), F(v.y), F(v.z)}; }
+Vec3<F> broadcast(const glm::vec3& v) {
+  return {F(v.x), F(v.y), F(v.z)};
+}
 
-/// base color and metallic-roughness to the models' parameters; alpha is kept above 0.03 (exponent below 2200).
+/// base color and metallic-roughness to the models' parameters; alpha is kept above 0.03 (exponent below
+/// 2200).
 template <class F>
 void set_material(Vec3<F> base, F metallic, F roughness, Surface<F>& surface) {
   const F alpha = max(roughness * roughness, F(0.03f));
@@ -52,7 +54,8 @@ Vec3<F> blinn_phong(const Surface<F>& s, const Vec3<F>& l, F n_dot_l) {
   return s.albedo * n_dot_l + s.specular * select(n_dot_l > F(0.0f), lobe, F(0.0f));
 }
 
-/// Smith separable G2, Schlick F; no 1/pi on the diffuse part (the lights' scale, techniques 0.5), so pi on the other.
+/// Smith separable G2, Schlick F; no 1/pi on the diffuse part (the lights' scale, techniques 0.5), so pi on
+/// the other.
 template <class F>
 Vec3<F> ggx(const Surface<F>& s, const Vec3<F>& l, F n_dot_l) {
   const Vec3<F> h = normalize(l + s.to_eye);
@@ -78,7 +81,8 @@ Vec3<F> reflect_light(const Surface<F>& s, const Vec3<F>& l, ShadingModel model)
   return model == ShadingModel::ggx ? ggx(s, l, n_dot_l) : blinn_phong(s, l, n_dot_l);
 }
 
-/// 1/d^2 windowed to zero at the range (Karis 2013), times the spot cone; `l` receives the unit direction to the light.
+/// 1/d^2 windowed to zero at the range (Karis 2013), times the spot cone; `l` receives the unit direction to
+/// the light.
 template <class F>
 F point_attenuation(const PointLight& light, const Vec3<F>& position, Vec3<F>& l) {
   const Vec3<F> d = broadcast<F>(light.position) - position;
@@ -105,13 +109,16 @@ F shadow_visibility(S& s, const LightingUniforms& u, const Vec3<F>& position, co
   using I = typename S::I;
   const Vec3<F> p = position + normal * F(u.shadow_offset_m);
   const glm::mat4& m = u.shadow_from_world;
-  const auto row = [&](int r) HWY_ATTR { return F(m[0][r]) * p.x + F(m[1][r]) * p.y + F(m[2][r]) * p.z + F(m[3][r]); };
+  const auto row = [&](int r) HWY_ATTR {
+    return F(m[0][r]) * p.x + F(m[1][r]) * p.y + F(m[2][r]) * p.z + F(m[3][r]);
+  };
   const F x = row(0) - F(0.5f), y = row(1) - F(0.5f);
   const F depth = row(2) - F(u.shadow_bias);
   const F left = floor(x), top = floor(y);
   const F fx = x - left, fy = y - top;
   // Far outside the map the conversion would overflow.
-  const I xi = to_int(min(max(left, F(-1.0e6f)), F(1.0e6f))), yi = to_int(min(max(top, F(-1.0e6f)), F(1.0e6f)));
+  const I xi = to_int(min(max(left, F(-1.0e6f)), F(1.0e6f))),
+          yi = to_int(min(max(top, F(-1.0e6f)), F(1.0e6f)));
   const auto tap = [&](int dx, int dy) HWY_ATTR {
     const F stored = s.load_image(u.shadow_slot, xi + I(dx), yi + I(dy), I(0)).x;
     return select(depth <= stored, F(1.0f), F(0.0f));
@@ -123,15 +130,16 @@ F shadow_visibility(S& s, const LightingUniforms& u, const Vec3<F>& position, co
 
 /// Ambient, emissive, directional lights and the given point lights. `mask`: lanes that are lit at all.
 template <class S, class F, class M>
-Vec3<F> light_surface(S& s, const LightingUniforms& u, std::span<const PointLight> points, const Surface<F>& surface,
-                      M mask) {
+Vec3<F> light_surface(S& s, const LightingUniforms& u, std::span<const PointLight> points,
+                      const Surface<F>& surface, M mask) {
   Vec3<F> sum = surface.emissive + surface.albedo * broadcast<F>(u.ambient);
   s.loop(kDirectionalBlock, u.directional_count, mask, [&](int i) HWY_ATTR {
     const DirectionalLight& light = u.directional[static_cast<std::size_t>(i)];
     F visible(1.0f);
     s.uniform_branch(kShadowBlock, light.shadowed && u.shadow_slot >= 0,
                      [&]() HWY_ATTR { visible = shadow_visibility(s, u, surface.position, surface.normal); });
-    sum = sum + reflect_light(surface, broadcast<F>(light.to_light), u.model) * (broadcast<F>(light.color) * visible);
+    sum = sum + reflect_light(surface, broadcast<F>(light.to_light), u.model) *
+                    (broadcast<F>(light.color) * visible);
   });
   s.loop(kPointBlock, static_cast<int>(points.size()), mask, [&](int i) HWY_ATTR {
     const PointLight& light = points[static_cast<std::size_t>(i)];

@@ -18,12 +18,14 @@ struct PointLight {
   glm::vec3 position{0.0f};
   float inv_range2 = 1.0f;  ///< 1 / range^2, per m^2
   glm::vec3 color{0.0f};
-  float cos_outer = -2.0f;  ///< spots: falls off from cos_inner to cos_outer around `axis`; -2: all directions
+  float cos_outer =
+      -2.0f;  ///< spots: falls off from cos_inner to cos_outer around `axis`; -2: all directions
   glm::vec3 axis{0.0f, -1.0f, 0.0f};
   float inv_cos_span = 1.0f;
 };
 
-/// All lights of a frame. The vectors hold at least one element, so that a shader can be counted without a scene.
+/// All lights of a frame. The vectors hold at least one element, so that a shader can be counted without a
+/// scene.
 struct LightingUniforms {
   glm::vec3 eye{0.0f};
   glm::vec3 ambient{0.0f};
@@ -33,8 +35,8 @@ struct LightingUniforms {
   std::vector<PointLight> points = std::vector<PointLight>(1);
   glm::mat4 shadow_from_world{1.0f};  ///< to (texel x, texel y, depth 0..1, 1)
   int shadow_slot = -1;               ///< image slot of the shadow map; -1: none
-  float shadow_offset_m = 0.0f;       ///< receivers are moved along their normal by this before the comparison
-  float shadow_bias = 0.0f;           ///< and by this in depth
+  float shadow_offset_m = 0.0f;  ///< receivers are moved along their normal by this before the comparison
+  float shadow_bias = 0.0f;      ///< and by this in depth
 };
 
 LightingUniforms make_lighting(const Scene& scene, const Camera& camera);

@@ -7,8 +7,8 @@
 #define HWY_TARGET_INCLUDE "pipeline/shade/mesh_vertex.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
-#include "pipeline/shade/vec-inl.h"
 #include "pipeline/shade/lanes-inl.h"
+#include "pipeline/shade/vec-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
@@ -27,7 +27,8 @@ struct MeshVertexShader {
     const glm::mat4& m = u.clip_from_world;
     for (int row = 0; row < 4; ++row)
       s.clip(row, ((s.constant(m[0][row]) * world.x + s.constant(m[1][row]) * world.y) +
-                   s.constant(m[2][row]) * world.z) + s.constant(m[3][row]));
+                   s.constant(m[2][row]) * world.z) +
+                      s.constant(m[3][row]));
     if constexpr (kOutput == MeshOutput::uv) {
       s.varying(0, s.attribute(s.kUv, 0));
       s.varying(1, s.attribute(s.kUv, 1));
@@ -75,7 +76,6 @@ class CountVertex : public VertexAttributes {
   int varyings_ = 0;
 };
 
-
 class VertexLanes : public VertexAttributes {
  public:
   using F = LaneF;
@@ -83,16 +83,23 @@ class VertexLanes : public VertexAttributes {
 
   F attribute(int attribute, int component) const {
     switch (attribute) {
-      case kPosition: return load(b_.position[component] + first_);
-      case kNormal: return load(b_.normal[component] + first_);
-      case kTangent: return load(b_.tangent[component] + first_);
-      case kUv: return load(b_.uv0[component] + first_);
-      default: return load(b_.color[component] + first_);
+      case kPosition:
+        return load(b_.position[component] + first_);
+      case kNormal:
+        return load(b_.normal[component] + first_);
+      case kTangent:
+        return load(b_.tangent[component] + first_);
+      case kUv:
+        return load(b_.uv0[component] + first_);
+      default:
+        return load(b_.color[component] + first_);
     }
   }
   Vec3<F> attribute3(int a) const { return {attribute(a, 0), attribute(a, 1), attribute(a, 2)}; }
   F constant(float c) const { return F(c); }
-  F world(int row, const Vec3<F>& v) const { return world_direction(row, v) + F(b_.world_from_local[12 + row]); }
+  F world(int row, const Vec3<F>& v) const {
+    return world_direction(row, v) + F(b_.world_from_local[12 + row]);
+  }
   F world_direction(int row, const Vec3<F>& v) const {
     const float* m = b_.world_from_local + row;
     return (F(m[0]) * v.x + F(m[4]) * v.y) + F(m[8]) * v.z;
@@ -145,22 +152,26 @@ VertexProgram describe(std::string name, void (*run)(VertexBatch&, const void*))
 
 const VertexProgram& mesh_position_program() {
   static const VertexProgram program = describe<MeshOutput::position>(
-      "mesh_position", [](VertexBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_position)(b, u); });
+      "mesh_position", [](VertexBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_position)
+                                                           (b, u); });
   return program;
 }
 const VertexProgram& mesh_uv_program() {
-  static const VertexProgram program = describe<MeshOutput::uv>(
-      "mesh_uv", [](VertexBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_uv)(b, u); });
+  static const VertexProgram program = describe<MeshOutput::uv>("mesh_uv", [](VertexBatch& b, const void* u) {
+    HWY_DYNAMIC_DISPATCH(run_uv)(b, u);
+  });
   return program;
 }
 const VertexProgram& mesh_surface_program() {
   static const VertexProgram program = describe<MeshOutput::surface>(
-      "mesh_surface", [](VertexBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_surface)(b, u); });
+      "mesh_surface", [](VertexBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_surface)
+                                                          (b, u); });
   return program;
 }
 const VertexProgram& mesh_full_program() {
   static const VertexProgram program = describe<MeshOutput::full>(
-      "mesh_full", [](VertexBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_full)(b, u); });
+      "mesh_full", [](VertexBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_full)
+                                                       (b, u); });
   return program;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// The vertex shaders of meshes. All of them compute the position by the same operations, so that depth is bit-identical
-// between passes.
+// The vertex shaders of meshes. All of them compute the position by the same operations, so that depth is
+// bit-identical between passes.
 #include <glm/glm.hpp>
 
 #include "pipeline/shade/program.h"

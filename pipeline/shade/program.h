@@ -1,7 +1,7 @@
 #pragma once
 // Shader programs as the emulator sees them: functions over batches of lanes, and what one lane's work is.
-// The functions come from templates over a lane type (shade/lanes-inl.h); the costs from the same templates run once on
-// a counting type (shade/count_lane.h). There is no hand-written cost table.
+// The functions come from templates over a lane type (shade/lanes-inl.h); the costs from the same templates
+// run once on a counting type (shade/count_lane.h). There is no hand-written cost table.
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -12,7 +12,8 @@ namespace hwsim::pipeline {
 
 /// Operations of one lane in one pass through a block of a shader.
 struct ShaderOps {
-  std::uint32_t alu = 0;     ///< add, multiply, fused multiply-add, compare, select, min, max, integer, conversion
+  std::uint32_t alu =
+      0;  ///< add, multiply, fused multiply-add, compare, select, min, max, integer, conversion
   std::uint32_t sfu = 0;     ///< reciprocal, square root, exp2, log2, sine, cosine
   std::uint32_t interp = 0;  ///< attribute scalars
   std::uint32_t tex = 0;     ///< filtered texture requests
@@ -35,8 +36,8 @@ struct VertexProgram {
   void (*run)(VertexBatch& batch, const void* uniforms) = nullptr;
   ShaderOps ops;
   int varying_scalars = 0;  ///< values written for the rasterizer to interpolate
-  /// The matrix by which the program transforms world positions; null when it also moves them, so that a mesh's bounds
-  /// do not bound what is drawn.
+  /// The matrix by which the program transforms world positions; null when it also moves them, so that a
+  /// mesh's bounds do not bound what is drawn.
   const glm::mat4* (*clip_from_world)(const void* uniforms) = nullptr;
 };
 

@@ -56,9 +56,13 @@ inline ScalarI operator&(ScalarI a, ScalarI b) { return a.v & b.v; }
 inline ScalarI operator|(ScalarI a, ScalarI b) { return a.v | b.v; }
 inline ScalarI operator^(ScalarI a, ScalarI b) { return a.v ^ b.v; }
 template <int kBits>
-ScalarI shift_left(ScalarI a) { return static_cast<std::int32_t>(static_cast<std::uint32_t>(a.v) << kBits); }
+ScalarI shift_left(ScalarI a) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a.v) << kBits);
+}
 template <int kBits>
-ScalarI shift_right(ScalarI a) { return a.v >> kBits; }
+ScalarI shift_right(ScalarI a) {
+  return a.v >> kBits;
+}
 inline ScalarI min(ScalarI a, ScalarI b) { return a.v < b.v ? a.v : b.v; }
 inline ScalarI max(ScalarI a, ScalarI b) { return a.v > b.v ? a.v : b.v; }
 inline ScalarM operator<(ScalarI a, ScalarI b) { return {a.v < b.v}; }

@@ -85,8 +85,8 @@ MaterialSample<typename S::F> sample_material(S& s, bool full_varyings) {
     out.emissive = out.emissive * Vec3<F>{texel.x, texel.y, texel.z};
   });
   s.uniform_branch(kVertexColorBlock, full_varyings && m.has_colors, [&]() HWY_ATTR {
-    out.base = {out.base.x * s.attr(V::kColor), out.base.y * s.attr(V::kColor + 1), out.base.z * s.attr(V::kColor + 2),
-                out.base.w * s.attr(V::kColor + 3)};
+    out.base = {out.base.x * s.attr(V::kColor), out.base.y * s.attr(V::kColor + 1),
+                out.base.z * s.attr(V::kColor + 2), out.base.w * s.attr(V::kColor + 3)};
   });
   out.normal = shading_normal(s, full_varyings);
   return out;

@@ -16,8 +16,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
-/// Samples one texture for the lanes of `valid` (helpers included: they fetch too). A lane fetches what it needs itself,
-/// not what its neighbors in a register need: otherwise counts would depend on the register's width.
+/// Samples one texture for the lanes of `valid` (helpers included: they fetch too). A lane fetches what it
+/// needs itself, not what its neighbors in a register need: otherwise counts would depend on the register's
+/// width.
 template <class F, class I, class M>
 class TextureSampler {
  public:
@@ -54,7 +55,8 @@ class TextureSampler {
     const F top(static_cast<float>(texture_.levels - 1));
     const F clamped = min(max(lod, F(0.0f)), top);
     if (s.mip == MipFilter::none) return level_filter(u, v, I(0), magnified, lanes);
-    if (s.mip == MipFilter::nearest) return level_filter(u, v, to_int(floor(clamped + F(0.5f))), magnified, lanes);
+    if (s.mip == MipFilter::nearest)
+      return level_filter(u, v, to_int(floor(clamped + F(0.5f))), magnified, lanes);
     const F lower = floor(clamped);
     const F fraction = clamped - lower;
     const Vec4<F> fine = level_filter(u, v, to_int(lower), magnified, lanes);
@@ -85,7 +87,8 @@ class TextureSampler {
     const I w = gather(texture_.width.data(), level), h = gather(texture_.height.data(), level);
     const F x = wrap(u, texture_.sampler.wrap_u) * to_float(w);
     const F y = wrap(v, texture_.sampler.wrap_v) * to_float(h);
-    const bool mag_linear = texture_.sampler.mag == Filter::linear, min_linear = texture_.sampler.min == Filter::linear;
+    const bool mag_linear = texture_.sampler.mag == Filter::linear,
+               min_linear = texture_.sampler.min == Filter::linear;
     if (!mag_linear && !min_linear) return nearest(x, y, w, h, level, lanes);
     const Vec4<F> smooth = bilinear(x, y, w, h, level, lanes);
     if (mag_linear && min_linear) return smooth;
@@ -171,7 +174,8 @@ class TextureSampler {
   void track(I index, std::uint32_t lanes) const {
     if (tracker_ == nullptr) return;
     for_each_lane(index, lanes, [&](int lane, std::int32_t texel) HWY_ATTR {
-      tracker_->use((first_lane_ + lane) / 4, texture_.first_line + static_cast<std::uint32_t>(texel) / kTexelsPerLine);
+      tracker_->use((first_lane_ + lane) / 4,
+                    texture_.first_line + static_cast<std::uint32_t>(texel) / kTexelsPerLine);
     });
   }
 

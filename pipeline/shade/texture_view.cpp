@@ -7,14 +7,15 @@ namespace {
 
 int tiles(int size) { return (size + 3) / 4; }
 
-void append_level(const MipLevel& level, std::size_t index, TextureView& view, std::vector<std::uint32_t>& out) {
+void append_level(const MipLevel& level, std::size_t index, TextureView& view,
+                  std::vector<std::uint32_t>& out) {
   view.width[index] = level.width;
   view.height[index] = level.height;
   view.tiles_x[index] = tiles(level.width);
   view.first_texel[index] = static_cast<std::int32_t>(out.size());
   const std::size_t first = out.size();
-  out.resize(first + static_cast<std::size_t>(tiles(level.width)) * static_cast<std::size_t>(tiles(level.height)) *
-                         kTexelsPerLine);
+  out.resize(first + static_cast<std::size_t>(tiles(level.width)) *
+                         static_cast<std::size_t>(tiles(level.height)) * kTexelsPerLine);
   for (int y = 0; y < level.height; ++y) {
     for (int x = 0; x < level.width; ++x) {
       const int offset = ((y >> 2) * view.tiles_x[index] + (x >> 2)) * kTexelsPerLine + (y & 3) * 4 + (x & 3);
@@ -28,7 +29,8 @@ void append_level(const MipLevel& level, std::size_t index, TextureView& view, s
 }  // namespace
 
 TextureStore::TextureStore(const Scene& scene)
-    : texels_(scene.textures.size()), by_texture_(scene.textures.size()),
+    : texels_(scene.textures.size()),
+      by_texture_(scene.textures.size()),
       sampler_count_(static_cast<int>(scene.samplers.size())) {
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
     const Texture& texture = scene.textures[i];
@@ -58,7 +60,8 @@ const TextureView* TextureStore::view(const TextureRef& ref) const {
 const std::array<float, 256>& srgb_decode_table() {
   static const std::array<float, 256> table = [] {
     std::array<float, 256> values{};
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = linear_from_srgb(static_cast<float>(i) / 255.0f);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = linear_from_srgb(static_cast<float>(i) / 255.0f);
     return values;
   }();
   return table;

@@ -32,25 +32,26 @@ class TextureStore {
  private:
   std::vector<std::vector<std::uint32_t>> texels_;
   std::vector<TextureView> by_texture_;
-  std::vector<TextureView> views_;              // texture x sampler
+  std::vector<TextureView> views_;  // texture x sampler
   int sampler_count_ = 0;
   std::uint32_t line_count_ = 0;
 };
 
-/// Which 64-byte lines of textures were used: by a small cache that starts cold in each screen bin, so that the count
-/// depends neither on threads nor on their order, and in a set of lines for the whole pass.
+/// Which 64-byte lines of textures were used: by a small cache that starts cold in each screen bin, so that
+/// the count depends neither on threads nor on their order, and in a set of lines for the whole pass.
 struct TextureTracker {
   static constexpr int kSets = 64, kWays = 4;  ///< 16 KiB, the class of the texture L1s of gpus section 3
   std::array<std::array<std::uint32_t, kWays>, kSets> tags;
   std::uint64_t missed_lines = 0;
   std::vector<std::uint64_t>* used_lines = nullptr;  ///< a bit a line, one set a worker
-  std::array<std::vector<std::uint32_t>, 16> batch_lines;  ///< of each quad of the batch that is being shaded, in order
+  std::array<std::vector<std::uint32_t>, 16>
+      batch_lines;  ///< of each quad of the batch that is being shaded, in order
 
   void reset() {
     for (auto& set : tags) set.fill(0xffffffffu);
   }
-  /// Quads that share a register fetch in turn, others after each other: the cache meets a batch's lines quad by quad,
-  /// whatever the register's width.
+  /// Quads that share a register fetch in turn, others after each other: the cache meets a batch's lines quad
+  /// by quad, whatever the register's width.
   void use(int quad, std::uint32_t line) {
     std::vector<std::uint32_t>& lines = batch_lines[static_cast<std::size_t>(quad)];
     if (lines.empty() || lines.back() != line) lines.push_back(line);
@@ -71,7 +72,8 @@ struct TextureTracker {
         return;
       }
     }
-    for (int w = kWays - 1; w > 0; --w) set[static_cast<std::size_t>(w)] = set[static_cast<std::size_t>(w - 1)];
+    for (int w = kWays - 1; w > 0; --w)
+      set[static_cast<std::size_t>(w)] = set[static_cast<std::size_t>(w - 1)];
     set[0] = line;
     ++missed_lines;
     (*used_lines)[line / 64] |= std::uint64_t{1} << (line % 64);

@@ -1,6 +1,6 @@
-// exp2 and log2 from exact operations (add, multiply, floor, shifts), so that every vector width and the scalar type
-// give the same bits. The library's functions differ between targets.
-// Per-target include guard, see shade/lanes-inl.h.
+// exp2 and log2 from exact operations (add, multiply, floor, shifts), so that every vector width and the
+// scalar type give the same bits. The library's functions differ between targets. Per-target include guard,
+// see shade/lanes-inl.h.
 #include <hwy/highway.h>
 
 #if defined(HWSIM_PIPELINE_SHADE_TRANSCENDENTAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -50,7 +50,9 @@ F log2_polynomial(F x) {
 
 /// x^y for x >= 0 (0 counts as 2^-126).
 template <class F>
-F pow(F x, F y) { return exp2(log2(x) * y); }
+F pow(F x, F y) {
+  return exp2(log2(x) * y);
+}
 
 }  // namespace hwsim::pipeline::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -26,22 +26,38 @@ struct Vec4 {
 };
 
 template <class F>
-Vec2<F> operator+(const Vec2<F>& a, const Vec2<F>& b) { return {a.x + b.x, a.y + b.y}; }
+Vec2<F> operator+(const Vec2<F>& a, const Vec2<F>& b) {
+  return {a.x + b.x, a.y + b.y};
+}
 template <class F>
-Vec2<F> operator*(const Vec2<F>& a, F s) { return {a.x * s, a.y * s}; }
+Vec2<F> operator*(const Vec2<F>& a, F s) {
+  return {a.x * s, a.y * s};
+}
 
 template <class F>
-Vec3<F> operator+(const Vec3<F>& a, const Vec3<F>& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vec3<F> operator+(const Vec3<F>& a, const Vec3<F>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
 template <class F>
-Vec3<F> operator-(const Vec3<F>& a, const Vec3<F>& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vec3<F> operator-(const Vec3<F>& a, const Vec3<F>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
 template <class F>
-Vec3<F> operator-(const Vec3<F>& a) { return {-a.x, -a.y, -a.z}; }
+Vec3<F> operator-(const Vec3<F>& a) {
+  return {-a.x, -a.y, -a.z};
+}
 template <class F>
-Vec3<F> operator*(const Vec3<F>& a, const Vec3<F>& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+Vec3<F> operator*(const Vec3<F>& a, const Vec3<F>& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
 template <class F>
-Vec3<F> operator*(const Vec3<F>& a, F s) { return {a.x * s, a.y * s, a.z * s}; }
+Vec3<F> operator*(const Vec3<F>& a, F s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
 template <class F>
-F dot(const Vec3<F>& a, const Vec3<F>& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+F dot(const Vec3<F>& a, const Vec3<F>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 template <class F>
 Vec3<F> cross(const Vec3<F>& a, const Vec3<F>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -52,16 +68,26 @@ Vec3<F> select(M mask, const Vec3<F>& a, const Vec3<F>& b) {
 }
 /// A zero vector stays zero: the guard costs one max.
 template <class F>
-Vec3<F> normalize(const Vec3<F>& a) { return a * rsqrt(max(dot(a, a), F(1e-30f))); }
+Vec3<F> normalize(const Vec3<F>& a) {
+  return a * rsqrt(max(dot(a, a), F(1e-30f)));
+}
 template <class F>
-Vec3<F> lerp(const Vec3<F>& a, const Vec3<F>& b, F t) { return a + (b - a) * t; }
+Vec3<F> lerp(const Vec3<F>& a, const Vec3<F>& b, F t) {
+  return a + (b - a) * t;
+}
 
 template <class F>
-Vec4<F> operator+(const Vec4<F>& a, const Vec4<F>& b) { return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w}; }
+Vec4<F> operator+(const Vec4<F>& a, const Vec4<F>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w};
+}
 template <class F>
-Vec4<F> operator-(const Vec4<F>& a, const Vec4<F>& b) { return {a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w}; }
+Vec4<F> operator-(const Vec4<F>& a, const Vec4<F>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w};
+}
 template <class F>
-Vec4<F> operator*(const Vec4<F>& a, F s) { return {a.x * s, a.y * s, a.z * s, a.w * s}; }
+Vec4<F> operator*(const Vec4<F>& a, F s) {
+  return {a.x * s, a.y * s, a.z * s, a.w * s};
+}
 
 }  // namespace hwsim::pipeline::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -20,7 +20,8 @@ void check_draw(const FrameGraph& graph, const Pass& pass, const PassCounters& n
   std::uint64_t triangles = 0, draws = 0;
   for (const pipeline::DrawBatch& batch : pass.batches) {
     for (const pipeline::DrawCall& call : batch.draws) {
-      const auto mesh = static_cast<std::size_t>(graph.scene().instances[static_cast<std::size_t>(call.instance)].mesh);
+      const auto mesh =
+          static_cast<std::size_t>(graph.scene().instances[static_cast<std::size_t>(call.instance)].mesh);
       triangles += graph.scene().meshes[mesh].parts[static_cast<std::size_t>(call.part)].index_count / 3;
     }
     draws += batch.draws.size();
@@ -53,16 +54,22 @@ void check_pass(const FrameGraph& graph, const Pass& pass, const PassWork& work)
     EXPECT_EQ(n.ps.invocations, n.raster.fragments);
   }
   switch (pass.kind) {
-    case PassKind::draw: check_draw(graph, pass, n); break;
-    case PassKind::full_screen: check_full_screen(pass, n); break;
+    case PassKind::draw:
+      check_draw(graph, pass, n);
+      break;
+    case PassKind::full_screen:
+      check_full_screen(pass, n);
+      break;
     case PassKind::compute:
-      EXPECT_EQ(n.stats.compute_shader_invocations, product(pass.groups_x, pass.groups_y) *
-                                                        product(pass.compute->group_width, pass.compute->group_height));
+      EXPECT_EQ(n.stats.compute_shader_invocations,
+                product(pass.groups_x, pass.groups_y) *
+                    product(pass.compute->group_width, pass.compute->group_height));
       break;
     case PassKind::clear: {
       std::uint64_t tiles = 0;
       for (const pipeline::ImageId id : pass.targets)
-        tiles += product((graph.image(id).width + 7) / 8, (graph.image(id).height + 7) / 8, graph.image(id).samples);
+        tiles += product((graph.image(id).width + 7) / 8, (graph.image(id).height + 7) / 8,
+                         graph.image(id).samples);
       EXPECT_EQ(n.fe.cleared_tiles, tiles);
       break;
     }
@@ -74,7 +81,8 @@ void check_pass(const FrameGraph& graph, const Pass& pass, const PassWork& work)
 }
 
 // The heat image holds the invocations of passes that have the frame's size or a multiple of it.
-void check_heat(const FrameGraph& graph, const pipeline::CompiledGraph& compiled, const pipeline::Emulation& e) {
+void check_heat(const FrameGraph& graph, const pipeline::CompiledGraph& compiled,
+                const pipeline::Emulation& e) {
   double heat = 0.0;
   for (const glm::vec4& pixel : e.shading_heat.pixels) heat += pixel.x;
   std::uint64_t invocations = 0;

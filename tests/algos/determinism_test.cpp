@@ -1,10 +1,11 @@
 // The same bytes and the same counters whatever runs them: threads, vector width, skipped work.
-// HWSIM_SIGNATURE_FILE names a file that the first program to run writes and later ones, built otherwise, must meet.
+// HWSIM_SIGNATURE_FILE names a file that the first program to run writes and later ones, built otherwise,
+// must meet.
 #include <gtest/gtest.h>
 
+#include <hwy/targets.h>
 #include <cstdlib>
 #include <fstream>
-#include <hwy/targets.h>
 
 #include "algos/frame_run.h"
 
@@ -32,7 +33,8 @@ class Determinism : public ::testing::TestWithParam<std::string> {
 };
 
 std::uint64_t fnv1a(const void* data, std::size_t size, std::uint64_t hash = 0xcbf29ce484222325ull) {
-  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 0x100000001b3ull;
+  for (std::size_t i = 0; i < size; ++i)
+    hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 0x100000001b3ull;
   return hash;
 }
 
@@ -45,7 +47,8 @@ std::map<std::string, std::uint64_t> signature(const FrameSetup& setup, const Em
   for (const PassWork& pass : e.trace.passes)
     for (const PassCounters& chunk : pass.chunks) chunks = fnv1a(&chunk, sizeof(chunk), chunks);
   const PassCounters sum = total(e.trace);
-  for (std::size_t i = 0; i < kCounterCount; ++i) all[key + std::string(counter_catalog()[i].id)] = values(sum)[i];
+  for (std::size_t i = 0; i < kCounterCount; ++i)
+    all[key + std::string(counter_catalog()[i].id)] = values(sum)[i];
   return all;
 }
 
@@ -84,7 +87,8 @@ TEST_P(Determinism, VectorTargetsChangeNothing) {
     const Emulation first = run_frame(setup, {});
     for (const std::int64_t target : targets) {
       const ForcedTarget forced(target);
-      EXPECT_EQ(difference(first, run_frame(setup, {})), "") << setup.scene << ", " << hwy::TargetName(target);
+      EXPECT_EQ(difference(first, run_frame(setup, {})), "")
+          << setup.scene << ", " << hwy::TargetName(target);
     }
   }
 }
@@ -94,8 +98,9 @@ TEST_P(Determinism, SkippedWorkChangesNothing) {
   for (const FrameSetup& setup : setups()) {
     const Emulation with = run_frame(setup, {});
     skipped += with.skipped.at("frustum") + with.skipped.at("accepted_tiles");
-    for (const pipeline::SkipSwitches skip : {pipeline::SkipSwitches{false, true}, pipeline::SkipSwitches{true, false},
-                                              pipeline::SkipSwitches{false, false}}) {
+    for (const pipeline::SkipSwitches skip :
+         {pipeline::SkipSwitches{false, true}, pipeline::SkipSwitches{true, false},
+          pipeline::SkipSwitches{false, false}}) {
       EmulationOptions options;
       options.skip = skip;
       const Emulation without = run_frame(setup, options);

@@ -1,5 +1,6 @@
 #pragma once
-// Runs techniques on scenes, and compares what two runs give: the image's bytes and every counter of the trace.
+// Runs techniques on scenes, and compares what two runs give: the image's bytes and every counter of the
+// trace.
 #include <cstring>
 #include <map>
 #include <memory>
@@ -16,8 +17,9 @@ namespace hwsim::test {
 inline std::vector<std::string> technique_variants() {
   std::vector<std::string> all;
   for (const algos::TechniqueInfo& t : algos::techniques()) all.emplace_back(t.id);
-  for (const char* variant : {"ssaa4x:variant=accumulate", "ssaa4x:variant=sample_rate", "msaa4x:centroid=off",
-                              "deferred:samples=1", "deferred_simple_complex:lighting=compute"})
+  for (const char* variant :
+       {"ssaa4x:variant=accumulate", "ssaa4x:variant=sample_rate", "msaa4x:centroid=off",
+        "deferred:samples=1", "deferred_simple_complex:lighting=compute"})
     all.emplace_back(variant);
   return all;
 }
@@ -64,18 +66,19 @@ inline std::string difference(const pipeline::Image& a, const pipeline::Image& b
 }
 
 inline std::string difference(const PassWork& a, const PassWork& b) {
-  const bool described = a.name == b.name && a.kind == b.kind && a.width_px == b.width_px &&
-                         a.height_px == b.height_px && a.barrier_before == b.barrier_before &&
-                         a.unique_vertex_bytes == b.unique_vertex_bytes &&
-                         a.unique_index_bytes == b.unique_index_bytes &&
-                         a.unique_storage_bytes == b.unique_storage_bytes && a.chunks.size() == b.chunks.size();
+  const bool described =
+      a.name == b.name && a.kind == b.kind && a.width_px == b.width_px && a.height_px == b.height_px &&
+      a.barrier_before == b.barrier_before && a.unique_vertex_bytes == b.unique_vertex_bytes &&
+      a.unique_index_bytes == b.unique_index_bytes && a.unique_storage_bytes == b.unique_storage_bytes &&
+      a.chunks.size() == b.chunks.size();
   if (!described) return "pass " + a.name + ": descriptions differ";
   for (std::size_t chunk = 0; chunk < a.chunks.size(); ++chunk) {
     const auto left = values(a.chunks[chunk]), right = values(b.chunks[chunk]);
     for (std::size_t i = 0; i < left.size(); ++i)
       if (left[i] != right[i])
-        return "pass " + a.name + ", chunk " + std::to_string(chunk) + ": " + std::string(counter_catalog()[i].id) +
-               " " + std::to_string(left[i]) + " and " + std::to_string(right[i]);
+        return "pass " + a.name + ", chunk " + std::to_string(chunk) + ": " +
+               std::string(counter_catalog()[i].id) + " " + std::to_string(left[i]) + " and " +
+               std::to_string(right[i]);
   }
   return "";
 }

@@ -1,6 +1,7 @@
-// Whole passes against llvmpipe: depth and primitive of every sample. Both are given the same clip coordinates. They
-// round window coordinates to 1/256 px by other roads (double and float), clip otherwise and evaluate depth in another
-// order, so samples may differ where one of these decides, and nowhere else: each difference is put into a class.
+// Whole passes against llvmpipe: depth and primitive of every sample. Both are given the same clip
+// coordinates. They round window coordinates to 1/256 px by other roads (double and float), clip otherwise
+// and evaluate depth in another order, so samples may differ where one of these decides, and nowhere else:
+// each difference is put into a class.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,10 +37,12 @@ std::vector<ClipTriangle> clip_triangles(const Scene& scene, const DrawBatch& ba
     for (std::size_t first = 0; first < clip.size(); first += kBatchLanes) {
       vertices->count = static_cast<int>(std::min<std::size_t>(kBatchLanes, clip.size() - first));
       for (int i = 0; i < vertices->count; ++i)
-        for (int k = 0; k < 3; ++k) vertices->position[k][i] = mesh.positions[first + static_cast<std::size_t>(i)][k];
+        for (int k = 0; k < 3; ++k)
+          vertices->position[k][i] = mesh.positions[first + static_cast<std::size_t>(i)][k];
       batch.vertex->run(*vertices, batch.vertex_uniforms.get());
       for (int i = 0; i < vertices->count; ++i)
-        for (int k = 0; k < 4; ++k) clip[first + static_cast<std::size_t>(i)][k] = vertices->clip_position[k][i];
+        for (int k = 0; k < 4; ++k)
+          clip[first + static_cast<std::size_t>(i)][k] = vertices->clip_position[k][i];
     }
     for (std::uint32_t i = 0; i < part.index_count; i += 3) {
       const std::uint32_t* index = mesh.indices.data() + part.first_index + i;
@@ -75,8 +78,8 @@ class Judge {
     });
   }
 
-  /// Distance to the nearest edge in pixels. Snapping moves a vertex by at most 1/512 px of its own, rounding in float
-  /// by 1/256 more at these sizes.
+  /// Distance to the nearest edge in pixels. Snapping moves a vertex by at most 1/512 px of its own, rounding
+  /// in float by 1/256 more at these sizes.
   double edge_distance(const ClipTriangle& t, double x, double y) const {
     glm::dvec2 p[3];
     for (int i = 0; i < 3; ++i) p[i] = screen(t.v[i]);
@@ -138,10 +141,14 @@ class LlvmpipeScene : public ::testing::Test {
       }
       ++i;
     }
-    if (clipped) ++classes.clipped;
-    else if (near_edge < 1.0 / 128) ++classes.edges;
-    else if (ours != 0 && theirs != 0 && std::fabs(z[0] - z[1]) <= slack[0] + slack[1]) ++classes.ties;
-    else ++classes.unexplained;
+    if (clipped)
+      ++classes.clipped;
+    else if (near_edge < 1.0 / 128)
+      ++classes.edges;
+    else if (ours != 0 && theirs != 0 && std::fabs(z[0] - z[1]) <= slack[0] + slack[1])
+      ++classes.ties;
+    else
+      ++classes.unexplained;
   }
 
   Classes compare(const std::shared_ptr<const Scene>& scene, int samples) {
@@ -156,7 +163,8 @@ class LlvmpipeScene : public ::testing::Test {
     frame.draw("ids", {batch});
     const Image ours = frame.run().color;
     const SampleImage theirs = llvmpipe_->render(
-        {.width = kWidth, .height = kHeight, .samples = samples, .depth_test = DepthTest::less}, std::vector{to_gl(triangles)});
+        {.width = kWidth, .height = kHeight, .samples = samples, .depth_test = DepthTest::less},
+        std::vector{to_gl(triangles)});
     const auto positions = standard_sample_positions(samples);
     const Judge judge(kWidth, kHeight);
     Classes classes;
@@ -169,10 +177,12 @@ class LlvmpipeScene : public ::testing::Test {
           classes.drawn += id != 0 ? 1 : 0;
           const SamplePosition p = positions[static_cast<std::size_t>(s)];
           if (id != theirs.primitive[i])
-            classify(triangles, judge, id, theirs.primitive[i], x + 0.5 + p.x / 16.0, y + 0.5 + p.y / 16.0, classes);
+            classify(triangles, judge, id, theirs.primitive[i], x + 0.5 + p.x / 16.0, y + 0.5 + p.y / 16.0,
+                     classes);
           else
-            classes.largest_depth_error = std::max(
-                classes.largest_depth_error, std::fabs(static_cast<double>(mine.y) - static_cast<double>(theirs.depth[i])));
+            classes.largest_depth_error =
+                std::max(classes.largest_depth_error,
+                         std::fabs(static_cast<double>(mine.y) - static_cast<double>(theirs.depth[i])));
         }
     return classes;
   }
@@ -181,12 +191,13 @@ class LlvmpipeScene : public ::testing::Test {
     const auto scene = test::share(open_scene(name, std::string(HWSIM_BINARY_DIR) + "/test_scenes"));
     for (const int samples : {1, 4}) {
       const Classes c = compare(scene, samples);
-      std::printf("[     note ] %s, %d samples: %llu drawn, %llu differ (edges %llu, depth ties %llu, clipped %llu, "
-                  "unexplained %llu), depth error %.2g\n",
-                  scene->name.c_str(), samples, static_cast<unsigned long long>(c.drawn),
-                  static_cast<unsigned long long>(c.differing), static_cast<unsigned long long>(c.edges),
-                  static_cast<unsigned long long>(c.ties), static_cast<unsigned long long>(c.clipped),
-                  static_cast<unsigned long long>(c.unexplained), c.largest_depth_error);
+      std::printf(
+          "[     note ] %s, %d samples: %llu drawn, %llu differ (edges %llu, depth ties %llu, clipped %llu, "
+          "unexplained %llu), depth error %.2g\n",
+          scene->name.c_str(), samples, static_cast<unsigned long long>(c.drawn),
+          static_cast<unsigned long long>(c.differing), static_cast<unsigned long long>(c.edges),
+          static_cast<unsigned long long>(c.ties), static_cast<unsigned long long>(c.clipped),
+          static_cast<unsigned long long>(c.unexplained), c.largest_depth_error);
       EXPECT_GT(c.drawn, 5000u * static_cast<unsigned>(samples));
       EXPECT_EQ(c.unexplained, 0u);
       EXPECT_LT(static_cast<double>(c.differing), 1e-3 * static_cast<double>(c.drawn));
@@ -219,7 +230,8 @@ TEST_F(LlvmpipeScene, ShowsTheSameTrianglesWhereNothingRounds) {
   for (std::uint32_t seed = 0; seed < 10; ++seed) {
     TriangleGenerator generator(kSize, kSize, seed);
     std::vector<FixedTriangle> fixed = generator.partition(40);
-    for (const TriangleKind kind : {TriangleKind::sliver, TriangleKind::tie, TriangleKind::axis_aligned, TriangleKind::tiny})
+    for (const TriangleKind kind :
+         {TriangleKind::sliver, TriangleKind::tie, TriangleKind::axis_aligned, TriangleKind::tiny})
       for (const FixedTriangle& t : generator.make(kind, 25)) fixed.push_back(t);
     std::erase_if(fixed, [](const FixedTriangle& t) {  // what the view volume would cut
       return std::any_of(t.vertices.begin(), t.vertices.end(), [](const FixedVertex& v) {
@@ -231,14 +243,16 @@ TEST_F(LlvmpipeScene, ShowsTheSameTrianglesWhereNothingRounds) {
     for (const FixedTriangle& t : fixed)
       for (const FixedVertex& v : t.vertices) {
         indices.push_back(static_cast<std::uint32_t>(positions.size()));
-        positions.emplace_back(static_cast<float>(v.x) / (kSize * 128) - 1.0f, 1.0f - static_cast<float>(v.y) / (kSize * 128), 0.5f);
+        positions.emplace_back(static_cast<float>(v.x) / (kSize * 128) - 1.0f,
+                               1.0f - static_cast<float>(v.y) / (kSize * 128), 0.5f);
       }
     const auto scene = test::share(test::clip_space_scene(positions, indices));
     for (const int samples : {1, 2, 4, 8, 16}) {
       test::SampleFrame frame(scene, kSize, kSize, samples, Format::r32_uint);
       frame.draw("ids", {frame.all_draws(mesh_position_program(), &test::primitive_program())});
       const Image ours = frame.run().color;
-      const SampleImage theirs = llvmpipe_->render({.width = kSize, .height = kSize, .samples = samples}, fixed);
+      const SampleImage theirs =
+          llvmpipe_->render({.width = kSize, .height = kSize, .samples = samples}, fixed);
       const SampleImage exact = exact_coverage(fixed, kSize, kSize, samples);
       std::uint64_t differing = 0;
       for (int y = 0; y < kSize; ++y)
@@ -246,7 +260,8 @@ TEST_F(LlvmpipeScene, ShowsTheSameTrianglesWhereNothingRounds) {
           for (int s = 0; s < samples; ++s) {
             const auto id = static_cast<std::uint32_t>(ours.at(x * samples + s, y).x);
             drawn += id != 0 ? 1 : 0;
-            differing += id != theirs.primitive[theirs.index(x, y, s)] || id != exact.primitive[exact.index(x, y, s)];
+            differing +=
+                id != theirs.primitive[theirs.index(x, y, s)] || id != exact.primitive[exact.index(x, y, s)];
           }
       EXPECT_EQ(differing, 0u) << "seed " << seed << ", " << samples << " samples";
     }

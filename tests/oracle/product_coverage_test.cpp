@@ -1,5 +1,5 @@
-// The product's rasterizer against exact arithmetic: set-up, bounds, tile tests and fine masks, on every vector target.
-// HWSIM_ORACLE_TRIANGLES sets the number of triangles.
+// The product's rasterizer against exact arithmetic: set-up, bounds, tile tests and fine masks, on every
+// vector target. HWSIM_ORACLE_TRIANGLES sets the number of triangles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -101,7 +101,9 @@ class Triangles {
 
   std::vector<FixedTriangle> next() {
     std::vector<FixedTriangle> all = generator_.fan(7);
-    const auto add = [&](const std::vector<FixedTriangle>& more) { all.insert(all.end(), more.begin(), more.end()); };
+    const auto add = [&](const std::vector<FixedTriangle>& more) {
+      all.insert(all.end(), more.begin(), more.end());
+    };
     add(generator_.partition(20));
     for (const TriangleKind kind : kAllTriangleKinds)
       if (kind != TriangleKind::guard_band) add(generator_.make(kind, kind == TriangleKind::large ? 5 : 20));
@@ -119,7 +121,8 @@ class Triangles {
     for (FixedVertex& v : t.vertices) v = {between(low, high), between(low, high), 0.5f};
     const int extremes = between(0, 3);  // vertices on the band's corners make the largest edge functions
     for (int i = 0; i < extremes; ++i)
-      t.vertices[static_cast<std::size_t>(i)] = {between(0, 1) != 0 ? low : high, between(0, 1) != 0 ? low : high, 0.5f};
+      t.vertices[static_cast<std::size_t>(i)] = {between(0, 1) != 0 ? low : high,
+                                                 between(0, 1) != 0 ? low : high, 0.5f};
     return t;
   }
 
@@ -129,7 +132,8 @@ class Triangles {
 
 bool in_guard_band(const FixedTriangle& t) {
   return std::all_of(t.vertices.begin(), t.vertices.end(), [](const FixedVertex& v) {
-    return std::min(v.x, v.y) >= pipeline::kGuardBandMinPx * 256 && std::max(v.x, v.y) <= pipeline::kGuardBandMaxPx * 256;
+    return std::min(v.x, v.y) >= pipeline::kGuardBandMinPx * 256 &&
+           std::max(v.x, v.y) <= pipeline::kGuardBandMaxPx * 256;
   });
 }
 
@@ -162,7 +166,8 @@ class Comparison {
   }
   std::uint64_t covered() const {
     std::uint64_t count = 0;
-    for (const std::uint32_t bits : exact_.bits) count += static_cast<std::uint64_t>(__builtin_popcount(bits));
+    for (const std::uint32_t bits : exact_.bits)
+      count += static_cast<std::uint64_t>(__builtin_popcount(bits));
     return count;
   }
 
@@ -231,7 +236,8 @@ TEST(ProductCoverage, EqualsExactCoverageInEverySample) {
       const FixedTriangle placed = moved(triangle, x, y);
       const FixedTriangle& drawn = in_guard_band(placed) ? placed : triangle;
       if (!in_guard_band(drawn)) continue;
-      const int width = far ? 16384 : triangles.between(1, kSize), height = far ? 16384 : triangles.between(1, kSize);
+      const int width = far ? 16384 : triangles.between(1, kSize),
+                height = far ? 16384 : triangles.between(1, kSize);
       const int samples = kSampleCounts[done++ % std::size(kSampleCounts)];
       const Comparison comparison(drawn, samples, x, y, width, height);
       covered += comparison.covered();
@@ -239,10 +245,10 @@ TEST(ProductCoverage, EqualsExactCoverageInEverySample) {
         hwy::SetSupportedTargetsForTest(target);
         differing += comparison.differences();
         hwy::SetSupportedTargetsForTest(0);
-        ASSERT_EQ(differing, 0u) << hwy::TargetName(target) << ", " << samples << " samples, seed " << seed << ", ("
-                                 << drawn.vertices[0].x << ", " << drawn.vertices[0].y << ") (" << drawn.vertices[1].x
-                                 << ", " << drawn.vertices[1].y << ") (" << drawn.vertices[2].x << ", "
-                                 << drawn.vertices[2].y << ")";
+        ASSERT_EQ(differing, 0u) << hwy::TargetName(target) << ", " << samples << " samples, seed " << seed
+                                 << ", (" << drawn.vertices[0].x << ", " << drawn.vertices[0].y << ") ("
+                                 << drawn.vertices[1].x << ", " << drawn.vertices[1].y << ") ("
+                                 << drawn.vertices[2].x << ", " << drawn.vertices[2].y << ")";
       }
     }
   }

@@ -15,7 +15,8 @@ namespace {
 using test::SampleFrame;
 
 std::shared_ptr<const Scene> quad(float z) {
-  return test::share(test::clip_space_scene({{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}}, {0, 1, 2, 0, 2, 3}));
+  return test::share(
+      test::clip_space_scene({{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}}, {0, 1, 2, 0, 2, 3}));
 }
 
 const BlendState kAdd{true, BlendFactor::one, BlendFactor::one, BlendFactor::one, BlendFactor::one, 0xf};
@@ -25,7 +26,8 @@ TEST(ClosedForm, TrianglesThatFillTheScreenCoverEverySampleOnce) {
   for (const int samples : {1, 2, 4, 8, 16, 32}) {
     for (int i = 0; i < 6; ++i) {
       const int width = 1 + static_cast<int>(random() % 150), height = 1 + static_cast<int>(random() % 90);
-      const float x = static_cast<float>(random() % 2001) / 1000 - 1, y = static_cast<float>(random() % 2001) / 1000 - 1;
+      const float x = static_cast<float>(random() % 2001) / 1000 - 1,
+                  y = static_cast<float>(random() % 2001) / 1000 - 1;
       const auto scene = test::share(test::clip_space_scene(
           {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {x, y, 0}}, {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4}));
       SampleFrame frame(scene, width, height, samples);
@@ -44,7 +46,8 @@ TEST(ClosedForm, TrianglesThatOverlapBlendInOrder) {
   std::vector<std::uint32_t> indices;
   for (int i = 0; i < 40; ++i) indices.insert(indices.end(), {0, 1, 2, 0, 2, 3});
   SampleFrame frame(
-      test::share(test::clip_space_scene({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, indices)), 40, 24, 4);
+      test::share(test::clip_space_scene({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, indices)), 40, 24,
+      4);
   DrawBatch batch = frame.all_draws(mesh_position_program(), &test::constant_program());
   batch.state.blend = {kAdd};
   frame.draw("pile", {batch});
@@ -52,10 +55,11 @@ TEST(ClosedForm, TrianglesThatOverlapBlendInOrder) {
 }
 
 TEST(ClosedForm, CountsCulledTrianglesByReason) {
-  const std::vector<glm::vec3> positions = {{-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0, 0.5f, 0},  // drawn, or turned away
-                                            {2, 0, 0}, {3, 0, 0}, {2, 1, 0},                      // outside
-                                            {0, 0, 2}, {1, 0, 2}, {0, 1, 2},                      // beyond far
-                                            {0.001f, 0.001f, 0}, {0.002f, 0.001f, 0}, {0.001f, 0.002f, 0}};  // no sample
+  const std::vector<glm::vec3> positions = {
+      {-0.5f, -0.5f, 0},   {0.5f, -0.5f, 0},    {0, 0.5f, 0},          // drawn, or turned away
+      {2, 0, 0},           {3, 0, 0},           {2, 1, 0},             // outside
+      {0, 0, 2},           {1, 0, 2},           {0, 1, 2},             // beyond far
+      {0.001f, 0.001f, 0}, {0.002f, 0.001f, 0}, {0.001f, 0.002f, 0}};  // no sample
   std::vector<std::uint32_t> indices;
   const auto add = [&](int times, std::initializer_list<std::uint32_t> t) {
     for (int i = 0; i < times; ++i) indices.insert(indices.end(), t);
@@ -121,14 +125,22 @@ TEST(ClosedForm, TheVertexCacheMissesAsAQueueDoes) {
 // Blending, against the formula of the state in floats.
 float factor(BlendFactor f, const glm::vec4& src, const glm::vec4& dst, int channel) {
   switch (f) {
-    case BlendFactor::zero: return 0;
-    case BlendFactor::one: return 1;
-    case BlendFactor::src_alpha: return src.w;
-    case BlendFactor::one_minus_src_alpha: return 1 - src.w;
-    case BlendFactor::dst_alpha: return dst.w;
-    case BlendFactor::one_minus_dst_alpha: return 1 - dst.w;
-    case BlendFactor::src_color: return src[channel];
-    case BlendFactor::dst_color: return dst[channel];
+    case BlendFactor::zero:
+      return 0;
+    case BlendFactor::one:
+      return 1;
+    case BlendFactor::src_alpha:
+      return src.w;
+    case BlendFactor::one_minus_src_alpha:
+      return 1 - src.w;
+    case BlendFactor::dst_alpha:
+      return dst.w;
+    case BlendFactor::one_minus_dst_alpha:
+      return 1 - dst.w;
+    case BlendFactor::src_color:
+      return src[channel];
+    case BlendFactor::dst_color:
+      return dst[channel];
   }
   return -1;
 }
@@ -171,8 +183,14 @@ TEST(ClosedForm, StencilOperationsFollowTheirTables) {
         StencilState state;
         state.reference = 0x5a;
         state.write_mask = static_cast<std::uint8_t>(write_mask);
-        const int full[] = {stored, 0, 0x5a, std::min(stored + 1, 255), std::max(stored - 1, 0), 255 - stored,
-                            (stored + 1) % 256, (stored + 255) % 256};
+        const int full[] = {stored,
+                            0,
+                            0x5a,
+                            std::min(stored + 1, 255),
+                            std::max(stored - 1, 0),
+                            255 - stored,
+                            (stored + 1) % 256,
+                            (stored + 255) % 256};
         EXPECT_EQ(stencil_result(state, static_cast<StencilOp>(op), static_cast<std::uint8_t>(stored)),
                   (stored & ~write_mask) | (full[op] & write_mask));
       }
@@ -180,7 +198,7 @@ TEST(ClosedForm, StencilOperationsFollowTheirTables) {
     for (int reference = 0; reference < 256; reference += 5)
       for (int stored = 0; stored < 256; ++stored) {
         const int a = reference & read_mask, b = stored & read_mask;
-        const bool passes[] = {false, a < b, a == b, a <= b, a > b, a != b, a >= b, true};
+        const bool passes[] = {false, a<b, a == b, a <= b, a> b, a != b, a >= b, true};
         for (int compare = 0; compare < 8; ++compare) {
           StencilState state;
           state.compare = static_cast<Compare>(compare);
@@ -200,36 +218,52 @@ const FragmentProgram& keeping_program() {  // may discard, so that tests run af
   return program;
 }
 
-// Which of the three operations a sample gets, early and late, with a coarse test that can decide tiles alone.
+// Which of the three operations a sample gets, early and late, with a coarse test that can decide tiles
+// alone.
 TEST(ClosedForm, StencilAndDepthPickTheOperation) {
   for (const FragmentProgram* program : {&test::constant_program(), &keeping_program()})
     for (const bool stencil_passes : {false, true})
       for (const bool depth_passes : {false, true})
         for (int alone = 0; alone < 4; ++alone) {  // all three operations, or one alone
-          SampleFrame frame(quad(depth_passes ? 0.25f : 0.75f), 21, 13, 2, Format::r32_float, Format::d24_unorm_s8);
+          SampleFrame frame(quad(depth_passes ? 0.25f : 0.75f), 21, 13, 2, Format::r32_float,
+                            Format::d24_unorm_s8);
           Pass& clear = frame.graph.add_clear("clear_depth", {frame.depth()});
           clear.clear_depth = 0.5f;
           clear.clear_stencil = 5;
           DrawBatch batch = frame.all_draws(mesh_position_program(), program);
           batch.state.depth = {true, true, Compare::less};
           StencilState& stencil = batch.state.stencil;
-          stencil = {true, stencil_passes ? Compare::equal : Compare::never, 5, 0xff, 0xff, StencilOp::keep,
-                     StencilOp::keep, StencilOp::keep};
+          stencil = {true,
+                     stencil_passes ? Compare::equal : Compare::never,
+                     5,
+                     0xff,
+                     0xff,
+                     StencilOp::keep,
+                     StencilOp::keep,
+                     StencilOp::keep};
           if (alone == 0 || alone == 1) stencil.on_fail = StencilOp::increment_wrap;
           if (alone == 0 || alone == 2) stencil.on_depth_fail = StencilOp::invert;
           if (alone == 0 || alone == 3) stencil.on_pass = StencilOp::zero;
-          const StencilOp op = !stencil_passes ? stencil.on_fail : depth_passes ? stencil.on_pass : stencil.on_depth_fail;
+          const StencilOp op = !stencil_passes ? stencil.on_fail
+                               : depth_passes  ? stencil.on_pass
+                                               : stencil.on_depth_fail;
           frame.draw("operate", {batch});
           DrawBatch show = frame.all_draws(mesh_position_program(), &test::constant_program());
-          show.state.stencil = {true, Compare::equal, stencil_result(stencil, op, 5), 0xff, 0xff, StencilOp::keep,
-                                StencilOp::keep, StencilOp::keep};
+          show.state.stencil = {true,
+                                Compare::equal,
+                                stencil_result(stencil, op, 5),
+                                0xff,
+                                0xff,
+                                StencilOp::keep,
+                                StencilOp::keep,
+                                StencilOp::keep};
           show.state.blend = {kAdd};
           show.fragment_uniforms = std::make_shared<glm::vec4>(10.0f);
           frame.draw("show", {show});
           for (const glm::vec4& sample : frame.run().color.pixels)
             ASSERT_EQ(sample.x, stencil_passes && depth_passes ? 11.0f : 10.0f)
-                << program->name << (program->can_discard ? " late" : " early") << " stencil " << stencil_passes
-                << " depth " << depth_passes << " operations " << alone;
+                << program->name << (program->can_discard ? " late" : " early") << " stencil "
+                << stencil_passes << " depth " << depth_passes << " operations " << alone;
         }
 }
 
@@ -254,7 +288,9 @@ const FragmentProgram& place_program() {
   static const FragmentProgram program = [] {
     FragmentProgram p = test::make_program("place", [](FragmentBatch& batch, const void*) {
       test::for_each_lane(batch, [&](std::size_t lane) {
-        const auto at = [&](std::size_t v) { return batch.varyings[v][lane / 4][SurfaceVaryings::kPosition]; };
+        const auto at = [&](std::size_t v) {
+          return batch.varyings[v][lane / 4][SurfaceVaryings::kPosition];
+        };
         const float x = at(0) + batch.b1[lane] * (at(1) - at(0)) + batch.b2[lane] * (at(2) - at(0));
         for (int c = 0; c < 4; ++c) batch.color[0][c][lane] = x;
       });
@@ -267,7 +303,8 @@ const FragmentProgram& place_program() {
 
 TEST(ClosedForm, CentroidsLieOnTheFirstCoveredSample) {
   constexpr int kWidth = 48, kHeight = 32;
-  const auto scene = test::share(test::clip_space_scene({{-0.9f, -0.8f, 0.5f}, {0.95f, -0.3f, 0.5f}, {0.1f, 0.9f, 0.5f}}, {0, 1, 2}));
+  const auto scene = test::share(
+      test::clip_space_scene({{-0.9f, -0.8f, 0.5f}, {0.95f, -0.3f, 0.5f}, {0.1f, 0.9f, 0.5f}}, {0, 1, 2}));
   for (const int samples : {2, 4, 8, 16}) {
     const auto positions = standard_sample_positions(samples);
     for (const int mode : {0, 1, 2}) {  // center, centroid, sample rate
@@ -290,8 +327,10 @@ TEST(ClosedForm, CentroidsLieOnTheFirstCoveredSample) {
             const float value = image.at(x * samples + s, y).x;
             if (value == 100.0f) continue;
             const int from = mode == 2 ? s : first;
-            const float offset = moves || mode == 2 ? static_cast<float>(positions[static_cast<std::size_t>(from)].x) / 16 : 0;
-            ASSERT_NEAR(value, (static_cast<float>(x) + 0.5f + offset) / kWidth * 2 - 1, 2e-4) << x << " " << y << " " << s;
+            const float offset =
+                moves || mode == 2 ? static_cast<float>(positions[static_cast<std::size_t>(from)].x) / 16 : 0;
+            ASSERT_NEAR(value, (static_cast<float>(x) + 0.5f + offset) / kWidth * 2 - 1, 2e-4)
+                << x << " " << y << " " << s;
           }
         }
       if (mode == 1) {
@@ -306,7 +345,8 @@ TEST(ClosedForm, ResolvesToTheMeanOfTheSamples) {
   std::vector<glm::vec3> positions;
   std::vector<std::uint32_t> indices;
   for (std::uint32_t i = 0; i < 60; ++i) {
-    positions.emplace_back(static_cast<float>(random() % 2001) / 1000 - 1, static_cast<float>(random() % 2001) / 1000 - 1, 0.5f);
+    positions.emplace_back(static_cast<float>(random() % 2001) / 1000 - 1,
+                           static_cast<float>(random() % 2001) / 1000 - 1, 0.5f);
     indices.push_back(i);
   }
   const auto scene = test::share(test::clip_space_scene(positions, indices));
@@ -331,15 +371,18 @@ TEST(ClosedForm, ResolvesToTheMeanOfTheSamples) {
 
 // Whether the triangle, grown by `margin`, and the pixel's square overlap: no axis separates them (1/256 px).
 bool touches(const std::int64_t (&p)[3][2], int x, int y, double margin) {
-  const double lo[2] = {x * 256.0 - margin, y * 256.0 - margin}, hi[2] = {x * 256.0 + 256 + margin, y * 256.0 + 256 + margin};
+  const double lo[2] = {x * 256.0 - margin, y * 256.0 - margin},
+               hi[2] = {x * 256.0 + 256 + margin, y * 256.0 + 256 + margin};
   for (int axis = 0; axis < 2; ++axis) {
     const auto [low, high] = std::minmax({p[0][axis], p[1][axis], p[2][axis]});
     if (static_cast<double>(high) < lo[axis] || static_cast<double>(low) > hi[axis]) return false;
   }
-  const double area = static_cast<double>((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]));
+  const double area = static_cast<double>((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -
+                                          (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]));
   for (int i = 0; i < 3; ++i) {
     const auto &a = p[i], &b = p[(i + 1) % 3];
-    const double nx = static_cast<double>(a[1] - b[1]) * (area > 0 ? 1 : -1), ny = static_cast<double>(b[0] - a[0]) * (area > 0 ? 1 : -1);
+    const double nx = static_cast<double>(a[1] - b[1]) * (area > 0 ? 1 : -1),
+                 ny = static_cast<double>(b[0] - a[0]) * (area > 0 ? 1 : -1);
     const double px = nx > 0 ? hi[0] : lo[0], py = ny > 0 ? hi[1] : lo[1];  // the corner furthest inside
     if (nx * (px - static_cast<double>(a[0])) + ny * (py - static_cast<double>(a[1])) < 0) return false;
   }
@@ -355,12 +398,14 @@ TEST(ClosedForm, ConservativeRasterCoversWhatTheTriangleTouches) {
     std::vector<glm::vec3> positions;
     for (auto& v : fixed) {
       for (std::int64_t& c : v) c = static_cast<std::int64_t>(random() % (kSize * 256 + 1));
-      positions.emplace_back(static_cast<float>(v[0]) / (kSize * 128) - 1, 1 - static_cast<float>(v[1]) / (kSize * 128), 0.5f);
+      positions.emplace_back(static_cast<float>(v[0]) / (kSize * 128) - 1,
+                             1 - static_cast<float>(v[1]) / (kSize * 128), 0.5f);
     }
     SampleFrame frame(test::share(test::clip_space_scene(positions, {0, 1, 2})), kSize, kSize, 1);
     DrawBatch batch = frame.all_draws(mesh_position_program(), &test::constant_program());
     batch.state.raster.conservative = true;
-    batch.state.raster.sample_positions = {{static_cast<std::int8_t>(i % 16 - 8), static_cast<std::int8_t>(7 - i / 16 % 16)}};
+    batch.state.raster.sample_positions = {
+        {static_cast<std::int8_t>(i % 16 - 8), static_cast<std::int8_t>(7 - i / 16 % 16)}};
     frame.draw("touch", {batch});
     const Image image = frame.run().color;
     for (int y = 0; y < kSize; ++y)

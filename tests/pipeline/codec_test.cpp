@@ -1,5 +1,5 @@
-// Formats against exact rational arithmetic (every value of these formats, and every product below, is exact in double
-// or in 128-bit integers), and the transcendental functions against the library's doubles.
+// Formats against exact rational arithmetic (every value of these formats, and every product below, is exact
+// in double or in 128-bit integers), and the transcendental functions against the library's doubles.
 #include "pipeline/shade/codec-inl.h"
 
 #include <gtest/gtest.h>
@@ -91,14 +91,18 @@ float decode_channel(const Channel& c, std::uint32_t code) {
   return decode(c.format, words)[static_cast<std::size_t>(c.component)];
 }
 
-bool has_sign(const ChannelCase& c) { return c.kind == Kind::snorm || (c.kind == Kind::small_float && c.channel.bits == 16); }
+bool has_sign(const ChannelCase& c) {
+  return c.kind == Kind::snorm || (c.kind == Kind::small_float && c.channel.bits == 16);
+}
 
 // The value of a code; NaN where the code is none that the product writes.
 double exact_value(const ChannelCase& c, std::uint32_t code) {
-  const double max_unorm = std::ldexp(1.0, c.channel.bits) - 1, max_snorm = std::ldexp(1.0, c.channel.bits - 1) - 1;
+  const double max_unorm = std::ldexp(1.0, c.channel.bits) - 1,
+               max_snorm = std::ldexp(1.0, c.channel.bits - 1) - 1;
   if (c.kind == Kind::unorm) return code / max_unorm;
   if (c.kind == Kind::snorm) {
-    const double v = code >= std::ldexp(1.0, c.channel.bits - 1) ? code - std::ldexp(1.0, c.channel.bits) : code;
+    const double v =
+        code >= std::ldexp(1.0, c.channel.bits - 1) ? code - std::ldexp(1.0, c.channel.bits) : code;
     return v < -max_snorm ? NAN : v / max_snorm;
   }
   const std::uint32_t mantissa = code & ((1u << c.mantissa) - 1), exponent = code >> c.mantissa & 31;
@@ -110,7 +114,8 @@ double exact_value(const ChannelCase& c, std::uint32_t code) {
 
 TEST(Codec, ReadsBackEveryCodeOfEveryChannel) {
   for (const ChannelCase& c : channel_cases()) {
-    SCOPED_TRACE(std::string(info(c.channel.format).name) + " component " + std::to_string(c.channel.component));
+    SCOPED_TRACE(std::string(info(c.channel.format).name) + " component " +
+                 std::to_string(c.channel.component));
     for (std::uint32_t code = 0; code < 1u << c.channel.bits; ++code) {
       const double exact = exact_value(c, code);
       if (std::isnan(exact)) continue;
@@ -127,7 +132,8 @@ TEST(Codec, RoundsToTheNearestCode) {
   std::mt19937 random(1);
   std::uint64_t checked = 0;
   for (const ChannelCase& c : channel_cases()) {
-    SCOPED_TRACE(std::string(info(c.channel.format).name) + " component " + std::to_string(c.channel.component));
+    SCOPED_TRACE(std::string(info(c.channel.format).name) + " component " +
+                 std::to_string(c.channel.component));
     for (int i = 0; i < 20000; ++i) {
       float x = static_cast<float>(random() >> 8) * 0x1p-24f;
       if (c.kind == Kind::small_float) x = std::ldexp(x + 0.5f, static_cast<int>(random() % 34) - 18);
@@ -168,7 +174,8 @@ TEST(Codec, RoundsTiesToEven) {
     if (c.kind != Kind::small_float) continue;
     SCOPED_TRACE(std::string(info(c.channel.format).name));
     for (std::uint32_t code = 0; code < 30u << c.mantissa; ++code) {
-      const double middle = 0.5 * (exact_value(c, code) + exact_value(c, code + 1));  // exact in a float as well
+      const double middle =
+          0.5 * (exact_value(c, code) + exact_value(c, code + 1));  // exact in a float as well
       ASSERT_EQ(encode_channel(c.channel, static_cast<float>(middle)), code + (code & 1)) << code;
     }
   }
@@ -181,7 +188,8 @@ TEST(Codec, NeverWritesInfinityNorNotANumber) {
     const auto format = static_cast<Format>(f);
     if (info(format).is_integer) continue;
     for (const float x : odd)
-      for (const float back : decode(format, encode(format, x, x, x, x))) EXPECT_TRUE(std::isfinite(back)) << info(format).name << " " << x;
+      for (const float back : decode(format, encode(format, x, x, x, x)))
+        EXPECT_TRUE(std::isfinite(back)) << info(format).name << " " << x;
   }
 }
 
@@ -233,13 +241,16 @@ TEST(Transcendental, Log2StaysWithinItsError) {
   for (std::uint32_t bits = 0x00800000u; bits < 0x7f800000u; bits += 97) {
     const float x = std::bit_cast<float>(bits);
     const double exact = std::log2(static_cast<double>(x)), error = std::fabs(log2(ScalarF(x)).v - exact);
-    if (x >= 0.5f && x <= 2.0f) near_one = std::max(near_one, error);
-    else elsewhere = std::max(elsewhere, error / std::fabs(exact));
+    if (x >= 0.5f && x <= 2.0f)
+      near_one = std::max(near_one, error);
+    else
+      elsewhere = std::max(elsewhere, error / std::fabs(exact));
   }
   EXPECT_LT(near_one, 4e-7);
   EXPECT_LT(elsewhere, 2e-7);
   EXPECT_EQ(log2(ScalarF(0.0f)).v, -126.0f);
-  std::printf("[     note ] log2: absolute error %.3g in [1/2, 2], relative %.3g elsewhere\n", near_one, elsewhere);
+  std::printf("[     note ] log2: absolute error %.3g in [1/2, 2], relative %.3g elsewhere\n", near_one,
+              elsewhere);
 }
 
 }  // namespace

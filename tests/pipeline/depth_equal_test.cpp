@@ -1,6 +1,7 @@
-// A pass with the test EQUAL meets the depth that a pre-pass wrote, bit for bit, though another vertex program computes
-// the position. After the pre-pass no sample of the scene is nearer than what is stored, so for each sample the numbers
-// of triangles that pass LESS, EQUAL and GREATER are 0, at least 1 where something is visible, and the rest.
+// A pass with the test EQUAL meets the depth that a pre-pass wrote, bit for bit, though another vertex
+// program computes the position. After the pre-pass no sample of the scene is nearer than what is stored, so
+// for each sample the numbers of triangles that pass LESS, EQUAL and GREATER are 0, at least 1 where
+// something is visible, and the rest.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -36,8 +37,8 @@ Counts count(const Setup& setup, Compare compare) {
   before.state.depth = {true, true, Compare::less};
   before.state.raster.cull = CullMode::back;
   frame.draw("prepass", {before}, false);
-  DrawBatch after = frame.all_draws(
-      mesh_surface_program(), &test::constant_program(mesh_surface_program().varying_scalars), clip);
+  DrawBatch after = frame.all_draws(mesh_surface_program(),
+                                    &test::constant_program(mesh_surface_program().varying_scalars), clip);
   after.state.depth = {true, false, compare};
   after.state.raster.cull = CullMode::back;
   after.state.blend = {{true, BlendFactor::one, BlendFactor::one, BlendFactor::one, BlendFactor::one, 0xf}};
@@ -86,7 +87,8 @@ TEST(DepthEqual, MeetsThePrePassInEverySampleOfEveryScene) {
   std::vector<std::string> scenes;
   for (const GeneratorInfo& generator : generators()) scenes.push_back(generator.name);
   for (const char* file : {"dragon_small.glb", "sponza.glb"})
-    if (const std::string path = std::string(HWSIM_SHARED_DIR) + "/scenes/" + file; std::filesystem::exists(path))
+    if (const std::string path = std::string(HWSIM_SHARED_DIR) + "/scenes/" + file;
+        std::filesystem::exists(path))
       scenes.push_back(path);
   for (const std::string& name : scenes) {
     SCOPED_TRACE(name);

@@ -1,4 +1,5 @@
-// What follows from a graph: needed passes, lifetimes, memory, barriers; and every code of the validator, provoked.
+// What follows from a graph: needed passes, lifetimes, memory, barriers; and every code of the validator,
+// provoked.
 #include <gtest/gtest.h>
 
 #include "pipeline/graph/validate.h"
@@ -13,7 +14,8 @@ std::shared_ptr<const Scene> one_triangle() {
   return test::share(test::clip_space_scene({{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {0, 1, 2}));
 }
 
-Pass& add_full_screen(FrameGraph& graph, const std::string& name, std::vector<ImageId> reads, ImageId target) {
+Pass& add_full_screen(FrameGraph& graph, const std::string& name, std::vector<ImageId> reads,
+                      ImageId target) {
   Pass& pass = graph.add_pass(name, PassKind::full_screen);
   pass.width = graph.image(target).width;
   pass.height = graph.image(target).height;
@@ -47,7 +49,8 @@ TEST(FrameGraph, LeavesOutWhatNobodyReads) {
   add_full_screen(graph, "after", {out}, b);
   graph.set_output(out);
   const CompiledGraph compiled = compile(graph, {}, {});
-  EXPECT_EQ(names(graph, compiled.order), (std::vector<std::string>{"clear", "fill", "for_unread", "unread", "kept", "show"}));
+  EXPECT_EQ(names(graph, compiled.order),
+            (std::vector<std::string>{"clear", "fill", "for_unread", "unread", "kept", "show"}));
   EXPECT_EQ(names(graph, compiled.culled), (std::vector<std::string>{"overwritten", "after"}));
   EXPECT_EQ(compiled.barrier_before, (std::vector<char>{0, 0, 1, 1, 0, 0}));
 }
@@ -55,9 +58,11 @@ TEST(FrameGraph, LeavesOutWhatNobodyReads) {
 TEST(FrameGraph, KeepsImagesFromTheirFirstUseToTheirLast) {
   FrameGraph graph(one_triangle(), 64, 32);
   std::vector<ImageId> chain;
-  for (int i = 0; i < 6; ++i) chain.push_back(graph.add_image({"image" + std::to_string(i), Format::rgba16_float, 64, 32, 1}));
+  for (int i = 0; i < 6; ++i)
+    chain.push_back(graph.add_image({"image" + std::to_string(i), Format::rgba16_float, 64, 32, 1}));
   add_full_screen(graph, "0", {}, chain[0]);
-  for (std::size_t i = 1; i < chain.size(); ++i) add_full_screen(graph, std::to_string(i), {chain[i - 1]}, chain[i]);
+  for (std::size_t i = 1; i < chain.size(); ++i)
+    add_full_screen(graph, std::to_string(i), {chain[i - 1]}, chain[i]);
   graph.set_output(chain.back());
   const CompiledGraph compiled = compile(graph, {}, {});
   const std::uint64_t image = 64 * 32 * 8;
@@ -122,7 +127,8 @@ struct Draft {
   }
   std::string codes() const {
     std::string all;
-    for (const Diagnostic& d : validate(graph, features, FunctionalConfig{})) all += (all.empty() ? "" : " ") + d.code;
+    for (const Diagnostic& d : validate(graph, features, FunctionalConfig{}))
+      all += (all.empty() ? "" : " ") + d.code;
     return all;
   }
   FrameGraph graph;
@@ -144,7 +150,10 @@ TEST(Validate, AcceptsAValidGraph) {
 
 TEST(Validate, G001Sizes) {
   EXPECT_EQ(codes_of([](Draft& d) { d.draw().color = {d.small}; }), "G001");
-  EXPECT_EQ(codes_of([](Draft& d) { d.graph.add_image({"huge", Format::rgba8_unorm, 16385, 1, 1}); }), "G001");
+  EXPECT_EQ(codes_of([](Draft& d) {
+              d.graph.add_image({"huge", Format::rgba8_unorm, 16385, 1, 1});
+            }),
+            "G001");
   EXPECT_EQ(codes_of([](Draft& d) { d.graph.add_image({"empty", Format::rgba8_unorm, 0, 4, 1}); }), "G001");
   EXPECT_EQ(codes_of([](Draft& d) { d.transfer(PassKind::copy, d.small, d.color); }), "G001");
 }
@@ -153,46 +162,52 @@ TEST(Validate, G002SampleCounts) {
   EXPECT_EQ(codes_of([](Draft& d) { d.graph.add_image({"three", Format::rgba8_unorm, 4, 4, 3}); }), "G002");
   EXPECT_EQ(codes_of([](Draft& d) { d.draw().color = {d.multi}; }), "G002");
   EXPECT_EQ(codes_of([](Draft& d) {
-    Pass& pass = d.draw();
-    pass.samples = 4;
-    pass.color = {d.multi};
-  }), "G002");  // the depth image
+              Pass& pass = d.draw();
+              pass.samples = 4;
+              pass.color = {d.multi};
+            }),
+            "G002");  // the depth image
   EXPECT_EQ(codes_of([](Draft& d) {
-    Pass& pass = d.draw();
-    pass.samples = 3;
-    pass.color = {};
-    pass.depth = {};
-    pass.batches.front().fragment = nullptr;
-  }), "G002");
+              Pass& pass = d.draw();
+              pass.samples = 3;
+              pass.color = {};
+              pass.depth = {};
+              pass.batches.front().fragment = nullptr;
+            }),
+            "G002");
   EXPECT_EQ(codes_of([](Draft& d) {
-    d.features.programmable_sample_positions = true;
-    d.draw().batches.front().state.raster.sample_positions = {{0, 0}, {1, 1}};
-  }), "G002");
+              d.features.programmable_sample_positions = true;
+              d.draw().batches.front().state.raster.sample_positions = {{0, 0}, {1, 1}};
+            }),
+            "G002");
 }
 
 TEST(Validate, G003Formats) {
   EXPECT_EQ(codes_of([](Draft& d) { d.draw().depth = d.color; }).substr(0, 4), "G003");
   EXPECT_EQ(codes_of([](Draft& d) { d.graph.add_image({"none", Format::none, 4, 4, 1}); }), "G003");
   EXPECT_EQ(codes_of([](Draft& d) {
-    Pass& pass = d.draw();
-    pass.color = {d.integer};
-    pass.batches.front().state.blend = {{true}};
-  }), "G003");
+              Pass& pass = d.draw();
+              pass.color = {d.integer};
+              pass.batches.front().state.blend = {{true}};
+            }),
+            "G003");
 }
 
 TEST(Validate, G004FeedbackLoops) {
   EXPECT_EQ(codes_of([](Draft& d) { d.draw().sampled = {d.color}; }), "G004");
   EXPECT_EQ(codes_of([](Draft& d) { d.draw().sampled = {d.depth}; }), "G004");
   EXPECT_EQ(codes_of([](Draft& d) {
-    Pass& pass = d.draw();
-    pass.sampled = {d.depth};
-    pass.depth_read_only = true;
-  }), "");
+              Pass& pass = d.draw();
+              pass.sampled = {d.depth};
+              pass.depth_read_only = true;
+            }),
+            "");
   EXPECT_EQ(codes_of([](Draft& d) {
-    Pass& pass = d.draw();
-    pass.depth_read_only = true;
-    pass.batches.front().state.depth.write = true;
-  }), "G004");
+              Pass& pass = d.draw();
+              pass.depth_read_only = true;
+              pass.batches.front().state.depth.write = true;
+            }),
+            "G004");
 }
 
 TEST(Validate, G005ReadsBeforeWrites) {
@@ -203,7 +218,10 @@ TEST(Validate, G005ReadsBeforeWrites) {
 TEST(Validate, G006Features) {
   EXPECT_EQ(codes_of([](Draft& d) { d.graph.add_image({"many", Format::rgba8_unorm, 4, 4, 16}); }), "G006");
   EXPECT_EQ(codes_of([](Draft& d) { d.draw().batches.front().state.raster.conservative = true; }), "G006");
-  EXPECT_EQ(codes_of([](Draft& d) { d.draw().batches.front().state.raster.sample_positions = {{0, 0}}; }), "G006");
+  EXPECT_EQ(codes_of([](Draft& d) {
+              d.draw().batches.front().state.raster.sample_positions = {{0, 0}};
+            }),
+            "G006");
 }
 
 TEST(Validate, G007Programs) {
@@ -212,10 +230,11 @@ TEST(Validate, G007Programs) {
   EXPECT_EQ(codes_of([](Draft& d) { d.draw().batches.front().vertex = &mesh_surface_program(); }), "G007");
   EXPECT_EQ(codes_of([](Draft& d) { d.draw().color = {d.color, d.integer}; }), "G007");
   EXPECT_EQ(codes_of([](Draft& d) {
-    Pass& pass = d.draw();
-    pass.depth = {};
-    pass.batches.front().state.depth.test = true;
-  }), "G007");
+              Pass& pass = d.draw();
+              pass.depth = {};
+              pass.batches.front().state.depth.test = true;
+            }),
+            "G007");
   EXPECT_EQ(codes_of([](Draft& d) { d.draw().sampled.assign(kMaxImageSlots + 1, d.integer); }), "G007");
 }
 

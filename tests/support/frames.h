@@ -12,7 +12,8 @@
 namespace hwsim::test {
 
 /// One mesh whose positions are clip coordinates (w = 1) under the identity matrix.
-inline pipeline::Scene clip_space_scene(std::vector<glm::vec3> positions, std::vector<std::uint32_t> indices) {
+inline pipeline::Scene clip_space_scene(std::vector<glm::vec3> positions,
+                                        std::vector<std::uint32_t> indices) {
   using namespace pipeline;
   Scene scene;
   scene.name = "test";
@@ -83,15 +84,16 @@ inline const pipeline::FragmentProgram& primitive_program() {
   return program;
 }
 
-/// Full-screen over an image `samples` times as wide: column x shows sample x % samples of pixel x / samples. Red from
-/// image slot 0, green from slot 1 if there is one. Uniforms: int, the samples.
+/// Full-screen over an image `samples` times as wide: column x shows sample x % samples of pixel x / samples.
+/// Red from image slot 0, green from slot 1 if there is one. Uniforms: int, the samples.
 inline const pipeline::FragmentProgram& unfold_program() {
   static const pipeline::FragmentProgram program =
       make_program("unfold", [](pipeline::FragmentBatch& batch, const void* u) {
         const int samples = *static_cast<const int*>(u);
         for_each_lane(batch, [&](std::size_t lane) {
           for (int c = 0; c < 4; ++c) batch.color[0][c][lane] = 0.0f;
-          const int x = batch.pixel_x[lane] / samples, s = batch.pixel_x[lane] % samples, y = batch.pixel_y[lane];
+          const int x = batch.pixel_x[lane] / samples, s = batch.pixel_x[lane] % samples,
+                    y = batch.pixel_y[lane];
           for (std::size_t slot = 0; slot < 2; ++slot) {
             const pipeline::GpuImage* image = batch.resources->images[slot];
             if (image == nullptr || x >= image->width || y >= image->height) continue;
@@ -104,7 +106,8 @@ inline const pipeline::FragmentProgram& unfold_program() {
   return program;
 }
 
-/// A frame with one color and one depth image, cleared first; add draws, then `run` for all samples' red and depth.
+/// A frame with one color and one depth image, cleared first; add draws, then `run` for all samples' red and
+/// depth.
 class SampleFrame {
  public:
   SampleFrame(std::shared_ptr<const pipeline::Scene> scene, int width, int height, int samples,
@@ -116,7 +119,8 @@ class SampleFrame {
   }
 
   /// All of the scene's meshes.
-  pipeline::DrawBatch all_draws(const pipeline::VertexProgram& vertex, const pipeline::FragmentProgram* fragment,
+  pipeline::DrawBatch all_draws(const pipeline::VertexProgram& vertex,
+                                const pipeline::FragmentProgram* fragment,
                                 const glm::mat4& clip_from_world = glm::mat4(1.0f)) const {
     pipeline::DrawBatch batch;
     batch.vertex = &vertex;
@@ -127,12 +131,14 @@ class SampleFrame {
     batch.state.raster.cull = pipeline::CullMode::none;
     const pipeline::Scene& scene = graph.scene();
     for (std::size_t i = 0; i < scene.instances.size(); ++i)
-      for (std::size_t p = 0; p < scene.meshes[static_cast<std::size_t>(scene.instances[i].mesh)].parts.size(); ++p)
+      for (std::size_t p = 0;
+           p < scene.meshes[static_cast<std::size_t>(scene.instances[i].mesh)].parts.size(); ++p)
         batch.draws.push_back({static_cast<int>(i), static_cast<int>(p)});
     return batch;
   }
 
-  pipeline::Pass& draw(const std::string& name, std::vector<pipeline::DrawBatch> batches, bool with_color = true) {
+  pipeline::Pass& draw(const std::string& name, std::vector<pipeline::DrawBatch> batches,
+                       bool with_color = true) {
     pipeline::Pass& pass = graph.add_pass(name, PassKind::draw);
     pass.samples = samples_;
     if (with_color) pass.color = {color_};
@@ -169,7 +175,8 @@ class SampleFrame {
 };
 
 inline const PassWork& pass_named(const WorkTrace& trace, const std::string& name) {
-  return *std::find_if(trace.passes.begin(), trace.passes.end(), [&](const PassWork& p) { return p.name == name; });
+  return *std::find_if(trace.passes.begin(), trace.passes.end(),
+                       [&](const PassWork& p) { return p.name == name; });
 }
 
 }  // namespace hwsim::test

@@ -260,7 +260,8 @@ class MeshBuilder {
 
   /// Files hold a wire's center line (techniques 6); everything but wire anti-aliasing draws its surface.
   void place_wire_surfaces() {
-    for (std::size_t i = 0; i < mesh_.radius.size(); ++i) mesh_.positions[i] += mesh_.normals[i] * mesh_.radius[i];
+    for (std::size_t i = 0; i < mesh_.radius.size(); ++i)
+      mesh_.positions[i] += mesh_.normals[i] * mesh_.radius[i];
   }
 
   Report& report_;
