@@ -72,6 +72,7 @@ std::uint32_t command_words(CommandKind kind) {
 
 std::vector<Command> record_pass(const FrameGraph& graph, const Pass& pass, bool barrier_before) {
   std::vector<Command> out;
+  out.reserve(8);  // what passes other than draws need
   if (barrier_before) out.push_back({CommandKind::barrier, 0, 0, 1});
   const auto attachments = pass.color.size() + (pass.depth ? 1u : 0u);
   switch (pass.kind) {

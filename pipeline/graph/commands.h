@@ -9,7 +9,7 @@
 
 namespace hwsim::pipeline {
 
-enum class CommandKind : std::uint8_t {
+enum class CommandKind : std::uint32_t {
   barrier,         ///< wait for earlier passes, flush what they wrote
   bind_targets,    ///< color and depth attachments, viewport
   bind_pipeline,   ///< fixed-function state and programs
