@@ -61,8 +61,10 @@ const pipeline::FragmentProgram& downsample_program() {
 const pipeline::FragmentProgram& scale_program() {
   static const pipeline::FragmentProgram program =
       pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::ScaleShader>(
-          "scale", [](pipeline::FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_scale)
-                                                                   (b, u); });
+          "scale", [](pipeline::FragmentBatch& b, const void* u) {
+            HWY_DYNAMIC_DISPATCH(run_scale)
+            (b, u);
+          });
   return program;
 }
 

@@ -276,9 +276,11 @@ namespace hwsim::algos {
 HWY_EXPORT(run_tile_light);
 
 const pipeline::ComputeProgram& tile_light_program() {
-  static const pipeline::ComputeProgram program = HWY_NAMESPACE::describe_tile_light(
-      [](pipeline::GroupBatch& g, const void* u) { HWY_DYNAMIC_DISPATCH(run_tile_light)
-                                                   (g, u); });
+  static const pipeline::ComputeProgram program =
+      HWY_NAMESPACE::describe_tile_light([](pipeline::GroupBatch& g, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_tile_light)
+        (g, u);
+      });
   return program;
 }
 

@@ -151,9 +151,11 @@ VertexProgram describe(std::string name, void (*run)(VertexBatch&, const void*))
 }  // namespace
 
 const VertexProgram& mesh_position_program() {
-  static const VertexProgram program = describe<MeshOutput::position>(
-      "mesh_position", [](VertexBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_position)
-                                                           (b, u); });
+  static const VertexProgram program =
+      describe<MeshOutput::position>("mesh_position", [](VertexBatch& b, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_position)
+        (b, u);
+      });
   return program;
 }
 const VertexProgram& mesh_uv_program() {
@@ -163,15 +165,19 @@ const VertexProgram& mesh_uv_program() {
   return program;
 }
 const VertexProgram& mesh_surface_program() {
-  static const VertexProgram program = describe<MeshOutput::surface>(
-      "mesh_surface", [](VertexBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_surface)
-                                                          (b, u); });
+  static const VertexProgram program =
+      describe<MeshOutput::surface>("mesh_surface", [](VertexBatch& b, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_surface)
+        (b, u);
+      });
   return program;
 }
 const VertexProgram& mesh_full_program() {
-  static const VertexProgram program = describe<MeshOutput::full>(
-      "mesh_full", [](VertexBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_full)
-                                                       (b, u); });
+  static const VertexProgram program =
+      describe<MeshOutput::full>("mesh_full", [](VertexBatch& b, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_full)
+        (b, u);
+      });
   return program;
 }
 
