@@ -108,11 +108,13 @@ class Validator {
       if (info(image.format).is_depth)
         fail("G003",
              "pass `" + pass.name + "` writes color to image " + text(image) + ", which has a depth format");
-      if (image.samples != pass.samples && !features_.target_independent_raster)
+      // Also on GPUs with target-independent raster: the emulator writes one color sample for each raster
+      // sample.
+      if (image.samples != pass.samples)
         fail("G002",
              "pass `" + pass.name + "` rasterizes " + std::to_string(pass.samples) + " samples into image " +
                  text(image),
-             "equal counts, or gpu.features.target_independent_raster = true");
+             "give the color image as many samples as the pass rasterizes");
       mark_written(id);
     }
     if (pass.depth) check_depth(pass);
