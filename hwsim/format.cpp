@@ -36,6 +36,7 @@ constexpr std::array<FormatInfo, 28> kFormats = {{
     {"d32_float", 1, 4, depth, true, false, true, false},
     {"d32_float_s8", 1, 8, depth, true, false, true, true},
 }};
+static_assert(kFormats.size() == static_cast<std::size_t>(kLastFormat) + 1);
 }  // namespace
 
 const FormatInfo& info(Format format) { return kFormats[static_cast<std::size_t>(format)]; }

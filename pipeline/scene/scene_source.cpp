@@ -11,7 +11,7 @@
 
 #include "pipeline/base/file_io.h"
 #include "pipeline/scene/generate/registry.h"
-#include "pipeline/scene/gltf/content_hash.h"
+#include "hwsim/base/content_hash.h"
 #include "pipeline/scene/gltf_loader.h"
 
 namespace hwsim::pipeline {
@@ -105,7 +105,7 @@ std::pair<std::string, Values> parse_spec(const std::string& spec) {
 std::string cache_file_name(const std::string& name, const Values& values) {
   std::string key = name + " version " + std::to_string(kGeneratorVersion);
   for (const auto& [parameter, value] : values) key += ' ' + parameter + '=' + shown(value);
-  gltf::ContentHash hash;
+  ContentHash hash;
   hash.add({reinterpret_cast<const std::uint8_t*>(key.data()), key.size()});
   return name + "-" + hash.hex().substr(0, 16) + ".glb";
 }

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "pipeline/scene/gltf/content_hash.h"
+#include "hwsim/base/content_hash.h"
 #include "tests/pipeline/scene_glb.h"
 
 namespace hwsim::pipeline {
@@ -75,7 +75,7 @@ TEST(SceneSource, BytesAreTheSameOnEveryMachine) {
       {"text_page", "43f3e500d69210323dd28c0880eec4c9"},  {"wires", "c960dcdac7605797179a0883f69efefa"}};
   for (const auto& [name, want] : golden) {
     write_generated_scene(name, {}, folder.path() + "/a.glb");
-    gltf::ContentHash hash;
+    ContentHash hash;
     hash.add(bytes_of(folder.path() + "/a.glb"));
     EXPECT_EQ(hash.hex(), want) << name;
   }

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "pipeline/scene/gltf/container.h"
-#include "pipeline/scene/gltf/content_hash.h"
+#include "hwsim/base/content_hash.h"
 #include "pipeline/scene/gltf/rules.h"
 
 namespace hwsim::pipeline::gltf {

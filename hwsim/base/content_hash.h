@@ -1,9 +1,10 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
 
-namespace hwsim::pipeline::gltf {
+namespace hwsim {
 
 /// Two 64-bit FNV-1a sums over 8-byte little-endian words, from different bases, the second fed with
 /// byte-swapped words: a key for caches, not a defense against forgers. By words, since by bytes 4 GiB would
@@ -11,6 +12,7 @@ namespace hwsim::pipeline::gltf {
 class ContentHash {
  public:
   void add(std::span<const std::uint8_t> bytes);
+  std::array<std::uint64_t, 2> words() const { return {a_, b_}; }
   std::string hex() const;  ///< 32 digits
 
  private:
@@ -19,4 +21,4 @@ class ContentHash {
   std::uint64_t b_ = 0x84222325cbf29ce4u;
 };
 
-}  // namespace hwsim::pipeline::gltf
+}  // namespace hwsim

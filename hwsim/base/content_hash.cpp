@@ -1,11 +1,11 @@
-#include "pipeline/scene/gltf/content_hash.h"
+#include "hwsim/base/content_hash.h"
 
 #include <bit>
 #include <cstddef>
 #include <cstring>
 
-namespace hwsim::pipeline::gltf {
-static_assert(std::endian::native == std::endian::little, "glTF is little-endian and is read by memcpy");
+namespace hwsim {
+static_assert(std::endian::native == std::endian::little, "files and keys are little-endian and read by memcpy");
 
 void ContentHash::add_word(std::uint64_t word) {
   constexpr std::uint64_t kPrime = 0x100000001b3u;
@@ -37,4 +37,4 @@ std::string ContentHash::hex() const {
   return out;
 }
 
-}  // namespace hwsim::pipeline::gltf
+}  // namespace hwsim

@@ -1,0 +1,57 @@
+#pragma once
+// The fields of a work trace, by name: the one list that writing, reading and versioning share. A field that
+// is added to a struct and not listed here does not compile.
+#include <concepts>
+#include <type_traits>
+
+#include "hwsim/work_trace.h"
+
+namespace hwsim {
+
+template <class Visitor, class Target>
+requires std::same_as<std::remove_const_t<Target>, ColorTargetWork>
+void describe_fields(Visitor& v, Target& target) {
+  auto& [format, samples, blended] = target;
+  v.field("format", format);
+  v.field("samples", samples);
+  v.field("blended", blended);
+}
+
+template <class Visitor, class Pass>
+requires std::same_as<std::remove_const_t<Pass>, PassWork>
+void describe_fields(Visitor& v, Pass& pass) {
+  auto& [name, kind, width_px, height_px, raster_samples, sample_rate, barrier_before, depth_format,
+         depth_samples, depth_cleared_before, color_cleared_before, color_targets, attribute_scalars,
+         unique_vertex_bytes, unique_index_bytes, unique_storage_bytes, chunks] = pass;
+  v.field("name", name);
+  v.field("kind", kind);
+  v.field("width_px", width_px);
+  v.field("height_px", height_px);
+  v.field("raster_samples", raster_samples);
+  v.field("sample_rate", sample_rate);
+  v.field("barrier_before", barrier_before);
+  v.field("depth_format", depth_format);
+  v.field("depth_samples", depth_samples);
+  v.field("depth_cleared_before", depth_cleared_before);
+  v.field("color_cleared_before", color_cleared_before);
+  v.field("color_targets", color_targets);
+  v.field("attribute_scalars", attribute_scalars);
+  v.field("unique_vertex_bytes", unique_vertex_bytes);
+  v.field("unique_index_bytes", unique_index_bytes);
+  v.field("unique_storage_bytes", unique_storage_bytes);
+  v.field("chunks", chunks);
+}
+
+template <class Visitor, class Trace>
+requires std::same_as<std::remove_const_t<Trace>, WorkTrace>
+void describe_fields(Visitor& v, Trace& trace) {
+  auto& [scene, technique, width_px, height_px, peak_memory_bytes, passes] = trace;
+  v.field("scene", scene);
+  v.field("technique", technique);
+  v.field("width_px", width_px);
+  v.field("height_px", height_px);
+  v.field("peak_memory_bytes", peak_memory_bytes);
+  v.field("passes", passes);
+}
+
+}  // namespace hwsim
