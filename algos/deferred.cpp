@@ -1,6 +1,7 @@
 #include "algos/deferred.h"
 
 #include <algorithm>
+#include <array>
 
 #include "algos/frame_parts.h"
 #include "algos/shaders/deferred.h"
@@ -142,8 +143,6 @@ void finish(FrameGraph& graph, const FrameParts& parts, const GBuffer& g) {
   pass.uniforms = std::make_shared<ScaleUniforms>();
 }
 
-}  // namespace
-
 FrameGraph build_deferred(const FrameRequest& request, const Parameters& parameters) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
@@ -176,5 +175,23 @@ FrameGraph build_simple_complex(const FrameRequest& request, const Parameters& p
   finish(graph, parts, g);
   return graph;
 }
+
+constexpr std::array<ParameterInfo, 1> kDeferred = {
+    ParameterInfo{"samples", 8, 1, 8, "samples a pixel: 1, 2, 4 or 8"}};
+constexpr std::array<ParameterInfo, 3> kSimpleComplex = {
+    ParameterInfo{"samples", 8, 2, 8, "samples a pixel: 2, 4 or 8"},
+    ParameterInfo{"lighting", 0, 0, 1, "full-screen passes with stencil, or 16x16 compute tiles",
+                  "stencil|compute"},
+    ParameterInfo{"normal_dot_min", 0.99, 0, 1, "normals further apart make a pixel complex (cosine)"}};
+
+constexpr TechniqueInfo kTechniques[] = {
+    {"deferred", "multisampled G-buffer, every sample lit", kDeferred, build_deferred},
+    {"deferred_simple_complex", "multisampled G-buffer, samples lit only where they differ (Lauritzen 2010)",
+     kSimpleComplex, build_simple_complex},
+};
+
+}  // namespace
+
+std::span<const TechniqueInfo> deferred_techniques() { return kTechniques; }
 
 }  // namespace hwsim::algos

@@ -4,7 +4,6 @@
 
 namespace hwsim::algos {
 
-pipeline::FrameGraph build_deferred(const FrameRequest& request, const Parameters& parameters);
-pipeline::FrameGraph build_simple_complex(const FrameRequest& request, const Parameters& parameters);
+std::span<const TechniqueInfo> deferred_techniques();
 
 }  // namespace hwsim::algos

@@ -1,5 +1,6 @@
 #include "algos/forward_techniques.h"
 
+#include <array>
 #include <cmath>
 
 #include "algos/frame_parts.h"
@@ -65,8 +66,6 @@ int integer(const Parameters& parameters, std::string_view name) {
   return static_cast<int>(parameters.find(name)->second);
 }
 
-}  // namespace
-
 FrameGraph build_none(const FrameRequest& request, const Parameters&) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
@@ -105,5 +104,36 @@ FrameGraph build_msaa(const FrameRequest& request, const Parameters& parameters)
                      false);
   return graph;
 }
+
+constexpr ParameterInfo kCentroid{
+    "centroid", 1, 0, 1, "attributes inside the primitive at partly covered pixels", "off|on"};
+constexpr ParameterInfo kVariant{"variant",
+                                 0,
+                                 0,
+                                 2,
+                                 "one large image, jittered frames, or sample-rate shading",
+                                 "ordered|accumulate|sample_rate"};
+constexpr std::array<ParameterInfo, 2> msaa(double samples) {
+  return {ParameterInfo{"samples", samples, samples, samples, "samples a pixel"}, kCentroid};
+}
+constexpr std::array<ParameterInfo, 2> ssaa(double samples) {
+  return {ParameterInfo{"samples", samples, samples, samples, "shaded samples a pixel"}, kVariant};
+}
+constexpr auto kMsaa2 = msaa(2), kMsaa4 = msaa(4), kMsaa8 = msaa(8);
+constexpr auto kSsaa4 = ssaa(4), kSsaa16 = ssaa(16), kSsaa64 = ssaa(64);
+
+constexpr TechniqueInfo kTechniques[] = {
+    {"none", "one sample a pixel, forward shading", {}, build_none},
+    {"ssaa4x", "supersampling, 2x2", kSsaa4, build_ssaa},
+    {"ssaa16x", "supersampling, 4x4", kSsaa16, build_ssaa},
+    {"ssaa64x", "supersampling, 8x8", kSsaa64, build_ssaa},
+    {"msaa2x", "multisampling, hardware resolve", kMsaa2, build_msaa},
+    {"msaa4x", "multisampling, hardware resolve", kMsaa4, build_msaa},
+    {"msaa8x", "multisampling, hardware resolve", kMsaa8, build_msaa},
+};
+
+}  // namespace
+
+std::span<const TechniqueInfo> forward_techniques() { return kTechniques; }
 
 }  // namespace hwsim::algos

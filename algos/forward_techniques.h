@@ -4,8 +4,6 @@
 
 namespace hwsim::algos {
 
-pipeline::FrameGraph build_none(const FrameRequest& request, const Parameters& parameters);
-pipeline::FrameGraph build_ssaa(const FrameRequest& request, const Parameters& parameters);
-pipeline::FrameGraph build_msaa(const FrameRequest& request, const Parameters& parameters);
+std::span<const TechniqueInfo> forward_techniques();
 
 }  // namespace hwsim::algos

@@ -35,23 +35,56 @@ struct ParameterInfo {
 };
 using Parameters = std::map<std::string, double, std::less<>>;
 
+enum class TechniqueKind { base, modifier, filter };
+std::string_view kind_name(TechniqueKind kind);
+
+/// One entry of the registry. Which function it has makes its kind: a base builds the frame, a modifier
+/// changes what bases are asked for (before them), a filter appends passes that take the frame's image (after
+/// them).
 struct TechniqueInfo {
   std::string_view id;  ///< "msaa4x"
   std::string_view description;
   std::span<const ParameterInfo> parameters;
   pipeline::FrameGraph (*build)(const FrameRequest& request, const Parameters& parameters) = nullptr;
+  void (*modify)(FrameRequest& request, const Parameters& parameters) = nullptr;
+  /// Returns the filtered image; `input` is the frame's, one sample a pixel.
+  pipeline::ImageId (*filter)(pipeline::FrameGraph& graph, pipeline::ImageId input,
+                              const Parameters& parameters) = nullptr;
+  /// Why it cannot go with another technique; empty: it can.
+  std::string_view (*refuses)(const TechniqueInfo& other) = nullptr;
+
+  TechniqueKind kind() const {
+    return build != nullptr    ? TechniqueKind::base
+           : modify != nullptr ? TechniqueKind::modifier
+                               : TechniqueKind::filter;
+  }
 };
 
-/// The explicit registry: the only shared source that a new technique touches.
+/// The explicit registry, family by family (registry.cpp).
 std::span<const TechniqueInfo> techniques();
 
-struct TechniqueChoice {
+struct TechniquePart {
   const TechniqueInfo* info = nullptr;
   Parameters parameters;  ///< complete: defaults filled in
 };
 
-/// "agaa:c=2,msaa=8". Throws InputError (T0xx) for unknown names (with the nearest), unknown keys and values
-/// out of range.
+/// Modifiers, one base, then filters in the order in which they are applied.
+struct TechniqueChoice {
+  std::vector<TechniquePart> parts;
+  const TechniquePart& base() const;
+};
+
+/// "agaa:c=2,msaa=8", "wire_aa+msaa4x+fxaa:preset=39"; without a base, `none` is it. Throws InputError (T0xx)
+/// with all problems: unknown names (with the nearest), unknown keys, values out of range, combinations that
+/// cannot be.
 TechniqueChoice parse_technique(std::string_view text);
+
+/// As parse_technique reads it: the parameters that differ from their defaults; with `complete`, all of them.
+/// A base `none` beside other parts is left out.
+std::string technique_text(const TechniqueChoice& choice, bool complete = false);
+std::string technique_text(const TechniquePart& part, bool complete = false);
+
+/// The frame graph of the combination.
+pipeline::FrameGraph build_frame(const TechniqueChoice& choice, const FrameRequest& request);
 
 }  // namespace hwsim::algos

@@ -59,7 +59,8 @@ Resolution parse_resolution(std::string_view text) {
 std::vector<std::string> split_techniques(std::string_view text) {
   std::vector<std::string> techniques;
   for (const std::string& piece : split(text, ',')) {
-    const bool parameter = piece.find('=') != std::string::npos && piece.find(':') == std::string::npos;
+    const bool parameter =
+        piece.find('=') < piece.find(':');  // further parts may follow: "b=1+fxaa:preset=39"
     if (parameter && !techniques.empty())
       techniques.back() += "," + piece;
     else

@@ -14,8 +14,8 @@ FormatRequest parse_format(const std::string& text);
 /// "1280x720". Throws InputError U005.
 Resolution parse_resolution(std::string_view text);
 
-/// Splits "msaa4x,agaa:c=2,msaa=8" into techniques: a piece with '=' but no ':' is a parameter of the one
-/// before it.
+/// Splits "msaa4x,agaa:c=2,msaa=8" into techniques: a piece whose '=' comes before any ':' is a parameter
+/// of the one before it.
 std::vector<std::string> split_techniques(std::string_view text);
 
 }  // namespace hwsim::cli

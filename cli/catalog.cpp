@@ -81,14 +81,17 @@ Table scene_catalog() {
 }
 
 Table technique_catalog() {
-  Table table{
-      {{"name", "name"}, {"parameters", "parameters", false, 40}, {"description", "description", false, 60}},
-      {}};
+  Table table{{{"name", "name"},
+               {"kind", "kind"},
+               {"parameters", "parameters", false, 40},
+               {"description", "description", false, 60}},
+              {}};
   for (const algos::TechniqueInfo& info : algos::techniques()) {
     std::string parameters;
     for (const algos::ParameterInfo& parameter : info.parameters)
       parameters += (parameters.empty() ? "" : ", ") + std::string(parameter.name);
-    table.rows.push_back({std::string(info.id), parameters, std::string(info.description)});
+    table.rows.push_back({std::string(info.id), std::string(algos::kind_name(info.kind())), parameters,
+                          std::string(info.description)});
   }
   return table;
 }

@@ -21,7 +21,7 @@ std::string plan_key(const RunPlan& plan, int jobs) {
   std::string key = fmt::format("{}|{}x{}|{}|{}|{}|{}", plan.view.scene, plan.view.resolution.width_px,
                                 plan.view.resolution.height_px, plan.view.point_lights,
                                 plan.reference_samples, plan.images, jobs);
-  for (const auto& technique : plan.techniques) key += "|" + technique_text(technique, true);
+  for (const auto& technique : plan.techniques) key += "|" + algos::technique_text(technique, true);
   for (const GpuConfig& gpu : plan.gpus) key += "|" + gpu.id;
   return key;
 }
@@ -111,7 +111,7 @@ void Run::simulate() {
   Simulator simulator(plan_, loaded_, reference_ ? &*reference_ : nullptr, options_.common.jobs);
   for (const algos::TechniqueChoice& technique : plan_.techniques)
     for (const GpuConfig& gpu : plan_.gpus) {
-      const std::string name = technique_text(technique) + " on " + gpu.id;
+      const std::string name = algos::technique_text(technique) + " on " + gpu.id;
       stage_progress(0.0, name);
       record(simulator.run(technique, gpu, [&](double done, const std::string& pass) {
         stage_progress(done, name + ": " + pass);

@@ -29,7 +29,9 @@ Table parameter_table() {
 }
 
 Answer describe(const algos::TechniqueInfo& info) {
-  Answer answer{.table = parameter_table(), .heading = fmt::format("{}: {}\n\n", info.id, info.description)};
+  Answer answer{
+      .table = parameter_table(),
+      .heading = fmt::format("{} ({}): {}\n\n", info.id, algos::kind_name(info.kind()), info.description)};
   for (const algos::ParameterInfo& p : info.parameters) {
     const bool named = !p.choices.empty();
     answer.table.rows.push_back(

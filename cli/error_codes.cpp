@@ -38,6 +38,9 @@ constexpr ErrorCode kCodes[] = {
     {"T002", "unknown parameter of a technique",
      "A technique is written name:key=value,key=value; `hwsim show TECHNIQUE` lists its keys."},
     {"T003", "bad value of a technique's parameter", "`hwsim show TECHNIQUE` lists ranges and choices."},
+    {"T004", "impossible combination",
+     "Techniques are combined with +: any modifiers, one base, any filters, each once. The message says what "
+     "excludes what."},
     {"X001", "internal error",
      "hwsim broke one of its own rules. That is never your input's fault: please report the message and the "
      "manifest."},

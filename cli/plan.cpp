@@ -114,24 +114,33 @@ pipeline::SkipSwitches plan_skip(const std::string& text, std::vector<Diagnostic
   return skip;
 }
 
-bool has_parameter(const algos::TechniqueChoice& choice, const std::string& key) {
-  return choice.parameters.find(key) != choice.parameters.end();
+/// The choice with technique.KEY given to every part that has the parameter; names of those used are added.
+algos::TechniqueChoice with_settings(const algos::TechniqueChoice& choice,
+                                     const std::vector<Assignment>& sets, std::set<std::string>& used) {
+  std::string text;
+  bool changed = false;
+  for (const algos::TechniquePart& part : choice.parts) {
+    std::vector<Assignment> own;
+    for (const Assignment& set : sets)
+      if (set.group() == "technique" && part.parameters.contains(key_of(set))) own.push_back(set);
+    for (const Assignment& set : own) used.insert(set.path);
+    changed = changed || !own.empty();
+    text += (text.empty() ? "" : "+") + with_parameters(algos::technique_text(part), own);
+  }
+  return changed ? algos::parse_technique(text) : choice;
 }
 
-/// technique.* goes to every technique that has the parameter; one at least must have it.
+/// One at least of the techniques must have a parameter that technique.* names.
 std::vector<algos::TechniqueChoice> plan_techniques(const std::vector<std::string>& texts,
                                                     const std::vector<Assignment>& sets,
                                                     std::vector<Diagnostic>& problems) {
   std::vector<algos::TechniqueChoice> choices;
   std::set<std::string> used, known;
   for (const std::string& text : texts) try {
-      algos::TechniqueChoice choice = algos::parse_technique(text);
-      std::vector<Assignment> own;
-      for (const auto& [name, value] : choice.parameters) known.insert(name);
-      for (const Assignment& set : sets)
-        if (set.group() == "technique" && has_parameter(choice, key_of(set))) own.push_back(set);
-      for (const Assignment& set : own) used.insert(set.path);
-      choices.push_back(own.empty() ? choice : algos::parse_technique(with_parameters(text, own)));
+      const algos::TechniqueChoice choice = algos::parse_technique(text);
+      for (const algos::TechniquePart& part : choice.parts)
+        for (const auto& [name, value] : part.parameters) known.insert(name);
+      choices.push_back(with_settings(choice, sets, used));
     } catch (const InputError& error) {
       append(problems, error);
     }
@@ -188,22 +197,6 @@ std::string with_parameters(const std::string& text, const std::vector<Assignmen
       result += "," + key + set.value;
   }
   return result;
-}
-
-std::string technique_text(const algos::TechniqueChoice& choice, bool complete) {
-  std::string parameters;
-  for (const algos::ParameterInfo& info : choice.info->parameters) {
-    const double value = choice.parameters.find(info.name)->second;
-    if (!complete && value == info.default_value) continue;
-    std::string text = exact(value);
-    if (!info.choices.empty()) {
-      std::string_view rest = info.choices;
-      for (double i = 0; i < value; ++i) rest.remove_prefix(rest.find('|') + 1);
-      text = rest.substr(0, rest.find('|'));
-    }
-    parameters += (parameters.empty() ? ":" : ",") + std::string(info.name) + "=" + text;
-  }
-  return std::string(choice.info->id) + parameters;
 }
 
 ViewPlan make_view_plan(const ViewOptions& options) {

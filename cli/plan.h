@@ -39,9 +39,6 @@ struct RunPlan {
 RunPlan make_run_plan(const RunOptions& options);
 ViewPlan make_view_plan(const ViewOptions& options);
 
-/// "agaa:c=2": the parameters that differ from their defaults; with `complete`, all of them.
-std::string technique_text(const algos::TechniqueChoice& choice, bool complete = false);
-
 /// "grass:seed=3" with further parameters or other values for those it has.
 std::string with_parameters(const std::string& text, const std::vector<Assignment>& parameters);
 

@@ -99,7 +99,7 @@ Json result_json(const PointResult& point, const RunPlan& plan, const std::strin
   Json json;
   json["schema_version"] = kResultSchemaVersion;
   json["scene"] = scene_name;
-  json["technique"] = technique_text(*point.technique);
+  json["technique"] = algos::technique_text(*point.technique);
   json["gpu"] = point.gpu->id;
   json["engine"] = engine_name(plan.engine);
   json["resolution"] = {plan.view.resolution.width_px, plan.view.resolution.height_px};
@@ -125,9 +125,9 @@ std::string headline_time(const FrameTiming& timing) {
 }
 
 std::string headline(const PointResult& point, const RunPlan& plan, const std::string& scene_name) {
-  std::string text =
-      fmt::format("{}, {} on {} at {}x{}: {}\n", scene_name, technique_text(*point.technique), point.gpu->id,
-                  plan.view.resolution.width_px, plan.view.resolution.height_px, headline_time(point.timing));
+  std::string text = fmt::format(
+      "{}, {} on {} at {}x{}: {}\n", scene_name, algos::technique_text(*point.technique), point.gpu->id,
+      plan.view.resolution.width_px, plan.view.resolution.height_px, headline_time(point.timing));
   if (!point.timing.passes.empty()) {
     const PassTiming& slowest = slowest_pass(point.timing);
     text += fmt::format("slowest pass: {}, {:.3g} ms, limited by {} ({} of its time)\n", slowest.name,
@@ -245,7 +245,7 @@ std::vector<Cell> summary_row(const PointResult& point) {
       timing.passes.empty()
           ? Cell{NotApplicable{}}
           : Cell{fmt::format("{} in {}", unit_name(slowest_pass(timing).limiter), slowest_pass(timing).name)};
-  return {technique_text(*point.technique),
+  return {algos::technique_text(*point.technique),
           point.gpu->id,
           Real{timing.time_ns / kNsPerMs, 3},
           bound(0),

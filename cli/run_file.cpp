@@ -152,7 +152,7 @@ std::string run_file_text(const RunPlan& plan, const algos::TechniqueChoice& tec
       "width_px = {}\nheight_px = {}\ncamera = {}\npoint_lights = {}\nshadows = {}\nshadow_map_px = {}\n"
       "emulator_skip = {}\nreference_samples = {}\n",
       kSchema, quoted(is_path ? fs::absolute(view.scene).lexically_normal().string() : view.scene),
-      quoted(technique_text(technique, true)), quoted(gpu_file),
+      quoted(algos::technique_text(technique, true)), quoted(gpu_file),
       quoted(std::string(engine_name(plan.engine))), view.resolution.width_px, view.resolution.height_px,
       quoted(view.camera), view.point_lights, view.shadows, view.shadow_map_px, quoted(skip_text(plan.skip)),
       plan.reference_samples);

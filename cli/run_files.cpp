@@ -68,7 +68,7 @@ void write_point_files(const std::string& folder, const PointResult& point, cons
 }
 
 std::string point_folder(const PointResult& point) {
-  std::string name = technique_text(*point.technique) + "@" + point.gpu->id;
+  std::string name = algos::technique_text(*point.technique) + "@" + point.gpu->id;
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 &&
         std::string_view("@+-_.").find(c) == std::string_view::npos)
@@ -99,7 +99,7 @@ Json manifest(const ManifestInput& input) {
   json["points"] = Json::array();
   for (const algos::TechniqueChoice& technique : input.plan->techniques)
     for (const GpuConfig& gpu : input.plan->gpus)
-      json["points"].push_back({{"technique", technique_text(technique, true)}, {"gpu", gpu.id}});
+      json["points"].push_back({{"technique", algos::technique_text(technique, true)}, {"gpu", gpu.id}});
   json["notes"] = Json::array();
   if (input.scene)
     for (const Diagnostic& note : input.scene->notes) json["notes"].push_back(note.message);

@@ -59,13 +59,13 @@ std::shared_ptr<const pipeline::Emulation> Simulator::emulate(const algos::Techn
                                                               const GpuConfig& gpu,
                                                               const ProgressFunction& progress,
                                                               bool& reused) {
-  const std::string key = technique_text(technique, true) + "@" + functional_hash(gpu);
+  const std::string key = algos::technique_text(technique, true) + "@" + functional_hash(gpu);
   reused = key == last_key_;
   if (reused) return last_emulation_;
   algos::FrameRequest request = frame_request(plan_.view, loaded_);
   request.features = gpu.features;
   request.functional = gpu.functional;
-  const pipeline::FrameGraph graph = technique.info->build(request, technique.parameters);
+  const pipeline::FrameGraph graph = algos::build_frame(technique, request);
   pipeline::EmulationOptions options;
   options.jobs = jobs_;
   options.skip = plan_.skip;

@@ -46,8 +46,7 @@ inline pipeline::FrameGraph build_graph(const FrameSetup& setup) {
   request.height_px = setup.height_px;
   request.shadow_map_px = 512;
   request.point_lights = 8;
-  const algos::TechniqueChoice choice = algos::parse_technique(setup.technique);
-  return choice.info->build(request, choice.parameters);
+  return algos::build_frame(algos::parse_technique(setup.technique), request);
 }
 
 inline pipeline::Emulation run_frame(const FrameSetup& setup, const pipeline::EmulationOptions& options) {

@@ -88,8 +88,7 @@ Pair both_ways(Scene scene, bool shadows, int point_lights) {
   request.height_px = 90;
   request.shadows = shadows;
   request.point_lights = point_lights;
-  const TechniqueChoice technique = parse_technique("ssaa16x");
-  const FrameGraph graph = technique.info->build(request, technique.parameters);
+  const FrameGraph graph = build_frame(parse_technique("ssaa16x"), request);
   GroundTruthOptions options;
   options.width = request.width_px;
   options.height = request.height_px;

@@ -21,8 +21,7 @@ FrameRequest hall_request() {
 }
 
 double psnr_db(const std::string& technique, const FrameRequest& request, const pipeline::Image& reference) {
-  const TechniqueChoice choice = parse_technique(technique);
-  const pipeline::FrameGraph graph = choice.info->build(request, choice.parameters);
+  const pipeline::FrameGraph graph = build_frame(parse_technique(technique), request);
   const pipeline::Emulation frame = pipeline::emulate(graph, request.features, request.functional, {});
   return pipeline::compare(frame.color, reference).psnr_db;
 }

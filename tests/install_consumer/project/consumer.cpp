@@ -20,9 +20,10 @@ int main(int argc, char** argv) {
   request.features = gpu.features;
   request.functional = gpu.functional;
   const auto choice = hwsim::algos::parse_technique("msaa4x");
-  const auto graph = choice.info->build(request, choice.parameters);
+  const auto graph = hwsim::algos::build_frame(choice, request);
   const auto frame = hwsim::pipeline::emulate(graph, gpu.features, gpu.functional, {});
   const auto timing = hwsim::time_frame(frame.trace, gpu, hwsim::Engine::queue);
-  std::printf("%s: %.3f ms on %s\n", choice.info->id.data(), timing.time_ns / 1e6, gpu.title.c_str());
+  std::printf("%s: %.3f ms on %s\n", hwsim::algos::technique_text(choice).c_str(), timing.time_ns / 1e6,
+              gpu.title.c_str());
   return timing.time_ns > 0.0 ? 0 : 1;
 }
