@@ -4,10 +4,6 @@
 
 namespace hwsim::pipeline {
 
-/// Misses of a FIFO post-transform cache for each run of kItemPrimitives primitives of a mesh part.
-std::vector<std::uint32_t> count_cache_misses(const Mesh& mesh, const Mesh::Part& part,
-                                              std::uint32_t indices_per_primitive, int cache_entries);
-
 struct GeometryOptions {
   int jobs = 1;
   int cache_entries = 32;

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "pipeline/depth/stencil.h"
-#include "pipeline/emulate/geometry.h"
+#include "pipeline/emulate/vertex_stage.h"
 #include "pipeline/raster/sample_pattern.h"
 #include "support/frames.h"
 

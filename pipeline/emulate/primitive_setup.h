@@ -1,0 +1,53 @@
+#pragma once
+// From assembled vertices to triangles ready for rasterization: clipping, culling, set-up.
+#include <array>
+
+#include "pipeline/emulate/pass_context.h"
+#include "pipeline/raster/clip.h"
+
+namespace hwsim::pipeline {
+
+ScreenVertex to_screen(const double* clip, int width_px, int height_px);
+
+/// A vertex with what clipping and set-up ask of it.
+ShadedVertex place_vertex(const float (&clip)[4], const GuardBand& band, int width_px, int height_px);
+
+/// Where a primitive's vertices and varyings lie.
+struct VertexSource {
+  const ShadedVertex* vertices = nullptr;
+  const float* varyings = nullptr;  ///< of vertex v: varyings + v * stride
+  std::size_t stride = 0;
+};
+
+/// Clips, culls and sets up the primitives of one draw, and appends what is left to an item.
+class PrimitiveSetup {
+ public:
+  PrimitiveSetup(const PassContext& context, const VertexSource& source, GeometryItem& item);
+
+  /// Where the following primitives' work is charged, and the number they carry.
+  void start_primitive(std::uint32_t primitive, PassCounters& counters);
+  void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+  void add_point(std::uint32_t v);
+  void add_line(std::uint32_t a, std::uint32_t b);
+
+ private:
+  using Vertices = std::array<std::uint32_t, 3>;
+  void add_quad(const std::array<ScreenVertex, 4>& corner, const std::array<std::uint32_t, 4>& v);
+  void add_clipped(const Vertices& v);
+  ClipVertex clip_vertex(std::uint32_t v, std::size_t corner) const;
+  void cull_outside();
+  std::uint32_t own_vertices() const;
+  void append_varyings(const Vertices& v, const std::array<double, 3>& weights);
+  void set_up(const ScreenVertex (&screen)[3], const Vertices& v);
+
+  const PassContext& c_;
+  const DrawInfo& draw_;
+  GeometryItem& item_;
+  VertexSource source_;
+  GuardBand band_;
+  SetupRules rules_;
+  PassCounters* counters_ = nullptr;
+  std::uint32_t primitive_ = 0;
+};
+
+}  // namespace hwsim::pipeline

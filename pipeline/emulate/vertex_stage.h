@@ -1,0 +1,21 @@
+#pragma once
+// Vertex fetch, shading and the post-transform cache of a segment's draws.
+#include "pipeline/emulate/pass_context.h"
+
+namespace hwsim::pipeline {
+
+/// Misses of a FIFO post-transform cache for each run of kItemPrimitives primitives of a mesh part.
+std::vector<std::uint32_t> count_cache_misses(const Mesh& mesh, const Mesh::Part& part,
+                                              std::uint32_t indices_per_primitive, int cache_entries);
+
+/// Marks draws that lie outside the view volume; returns their number.
+std::uint64_t mark_outside(const PassContext& context, Segment& segment);
+
+/// Charges the chunks for fetching and shading, as the cache lets vertices through.
+void count_vertex_work(const PassContext& context, const Segment& segment, int cache_entries,
+                       std::vector<PassCounters>& chunks);
+
+/// Shades every vertex of the segment's draws that are not outside, once.
+void shade_vertices(const PassContext& context, Segment& segment, int jobs);
+
+}  // namespace hwsim::pipeline
