@@ -7,7 +7,7 @@
 
 #include "algos/technique.h"
 #include "cli/files.h"
-#include "cli/messages.h"
+#include "hwsim/base/csv.h"
 #include "hwsim/config/gpu_config.h"
 #include "hwsim/counters.h"
 #include "pipeline/scene/scene_source.h"
@@ -20,33 +20,6 @@ namespace fs = std::filesystem;
 constexpr size_t kTextColumns = 72;
 
 fs::path published_directory() { return fs::path(config_directory()) / "published"; }
-
-/// Fields of one record from `at` on; leaves `at` after its line end.
-std::vector<std::string> parse_record(const std::string& text, size_t& at) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (; at < text.size(); ++at) {
-    const char c = text[at];
-    if (quoted) {
-      if (c == '"' && at + 1 < text.size() && text[at + 1] == '"')
-        fields.back() += text[++at];
-      else if (c == '"')
-        quoted = false;
-      else
-        fields.back() += c;
-    } else if (c == '"') {
-      quoted = true;
-    } else if (c == ',') {
-      fields.emplace_back();
-    } else if (c == '\n') {
-      ++at;
-      break;
-    } else if (c != '\r') {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
 
 }  // namespace
 
@@ -113,7 +86,7 @@ Table table_catalog() {
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(published_directory(), error)) {
     if (entry.path().extension() != ".csv") continue;
-    const Table content = parse_csv(read_file(entry.path().string()), entry.path().string());
+    const Table content = read_table(entry.path().string());
     std::string columns;
     for (const Column& column : content.columns) columns += (columns.empty() ? "" : " ") + column.id;
     table.rows.push_back({entry.path().stem().string(), std::uint64_t{content.rows.size()}, columns});
@@ -130,17 +103,11 @@ std::vector<std::string> names_of(const Table& catalog) {
   return names;
 }
 
-Table parse_csv(const std::string& text, const std::string& path) {
+Table read_table(const std::string& path) {
+  const CsvFile file = read_csv(path);
   Table table;
-  size_t at = 0;
-  for (const std::string& id : parse_record(text, at)) table.columns.push_back({id, id});
-  for (int row = 2; at < text.size(); ++row) {
-    const std::vector<std::string> fields = parse_record(text, at);
-    if (fields.size() != table.columns.size())
-      fail("U015", fmt::format("record {} of `{}` has {} fields, the header has {}", row, path, fields.size(),
-                               table.columns.size()));
-    table.rows.emplace_back(fields.begin(), fields.end());
-  }
+  for (const std::string& id : file.header) table.columns.push_back({id, id});
+  for (const std::vector<std::string>& row : file.rows) table.rows.emplace_back(row.begin(), row.end());
   return table;
 }
 

@@ -16,9 +16,8 @@ Table table_catalog();  ///< the published tables, configs/published
 /// First column of a catalog.
 std::vector<std::string> names_of(const Table& catalog);
 
-/// A CSV file as a table, RFC 4180; LF alone ends a line too. Throws InputError U015 for rows of another
-/// length.
-Table parse_csv(const std::string& text, const std::string& path);
+/// A CSV file as a table. Throws InputError.
+Table read_table(const std::string& path);
 
 /// The path of a published table.
 std::string published_table_path(const std::string& name);

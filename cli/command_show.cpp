@@ -67,7 +67,7 @@ std::optional<Answer> find_entry(const std::string& name) {
     if (info.id == name) return describe(info);
   const std::vector<std::string> tables = names_of(table_catalog());
   if (std::find(tables.begin(), tables.end(), name) != tables.end())
-    return Answer{.table = parse_csv(read_file(published_table_path(name)), published_table_path(name))};
+    return Answer{.table = read_table(published_table_path(name))};
   return std::nullopt;
 }
 

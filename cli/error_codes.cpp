@@ -102,6 +102,12 @@ constexpr ErrorCode kCodes[] = {
      "Generated scenes are kept below $HWSIM_CACHE, else $XDG_CACHE_HOME/hwsim, else ~/.cache/hwsim."},
     {"S300", "contents of a scene", "What the file holds, as `hwsim scene check` counts it."},
 
+    {"M001", "mapping of the published tables",
+     "A line of configs/published/mapping/*.csv matches no row, or names something that does not exist."},
+    {"M002", "published row without a run",
+     "Every time and count of configs/published needs lines in mapping/ that name its scene, technique, GPU and "
+     "passes, or a reason in uses.csv why it is left out."},
+
     {"I001", "image module not found",
      "Images are read and written by libhwsim_image_io.so, which lies beside the program's libraries and "
      "needs OpenImageIO. HWSIM_MODULE_DIR names another folder."},

@@ -1,0 +1,274 @@
+#include "cost_models/published.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "hwsim/base/csv.h"
+#include "hwsim/base/diagnostics.h"
+
+namespace hwsim::cost_models {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The fields that rules test, by the names of the columns in mapping files.
+std::string field(const PublishedRow& row, std::string_view column) {
+  if (column == "document") return row.document;
+  if (column == "table") return row.table;
+  if (column == "gpu") return row.gpu;
+  if (column == "scene") return row.scene;
+  if (column == "view") return row.view;
+  if (column == "technique") return row.technique;
+  if (column == "msaa") return row.msaa;
+  if (column == "surfaces") return row.surfaces;
+  if (column == "lighting") return row.lighting;
+  if (column == "pass") return row.pass;
+  return row.quantity;
+}
+
+Diagnostic mapping_problem(const std::string& message, const std::string& path, int line) {
+  Diagnostic problem{.code = "M001", .message = message};
+  problem.place.file = path;
+  problem.place.line = line;
+  problem.place.column = 1;
+  problem.help =
+      "uses are fitted, derived, count, excluded and claim; columns are those of the tables, * is anything";
+  return problem;
+}
+
+/// A mapping file: its first `conditions` columns are matched with a row ("*" is anything), the others are
+/// what the first matching line says.
+class Rules {
+ public:
+  Rules(const std::string& path, std::size_t conditions)
+      : file_(read_csv(path)), conditions_(conditions), used_(file_.rows.size(), false) {}
+
+  /// The line for a row, or none.
+  const std::vector<std::string>* find(const PublishedRow& row) {
+    for (std::size_t i = 0; i < file_.rows.size(); ++i) {
+      bool all = true;
+      for (std::size_t c = 0; c < conditions_ && all; ++c)
+        all = file_.rows[i][c] == "*" || file_.rows[i][c] == field(row, file_.header[c]);
+      if (!all) continue;
+      used_[i] = true;
+      return &file_.rows[i];
+    }
+    return nullptr;
+  }
+
+  /// The text of a column in a line that `find` returned.
+  const std::string& text(const std::vector<std::string>& line, std::string_view column) const {
+    return line[file_.column(column)];
+  }
+
+  void report_unused(std::vector<Diagnostic>& problems) const {
+    for (std::size_t i = 0; i < used_.size(); ++i)
+      if (!used_[i])
+        problems.push_back(mapping_problem(
+            "this rule matches no published row, or only rows of earlier rules", file_.path, file_.lines[i]));
+  }
+
+ private:
+  CsvFile file_;
+  std::size_t conditions_;
+  std::vector<bool> used_;
+};
+
+double number(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? value : 0.0;
+}
+
+RowUse use_from_name(const std::string& name, const std::string& path) {
+  for (const RowUse use : {RowUse::fitted, RowUse::derived, RowUse::count, RowUse::excluded, RowUse::claim})
+    if (row_use_name(use) == name) return use;
+  throw InputError(mapping_problem("`" + name + "` is no use of a row", path, 0));
+}
+
+std::string filled(std::string text, const PublishedRow& row) {
+  for (const auto& [name, value] :
+       {std::pair{std::string("{msaa}"), row.msaa}, std::pair{std::string("{surfaces}"), row.surfaces}})
+    for (auto at = text.find(name); at != std::string::npos; at = text.find(name))
+      text.replace(at, name.size(), value);
+  return text;
+}
+
+bool is_percent(const PublishedRow& row) { return row.quantity.starts_with("percent_change_"); }
+
+/// Percentages refer to the row without surfaces of the same table, scene, rate and lighting.
+const PublishedRow* reference_of(const PublishedRow& row, const std::vector<PublishedRow>& rows) {
+  for (const PublishedRow& other : rows)
+    if (other.table == row.table && other.scene == row.scene && other.msaa == row.msaa &&
+        other.lighting == row.lighting && other.surfaces.empty() && !is_percent(other) &&
+        other.pass == row.pass && (other.quantity == "memory_mbytes") == row.quantity.ends_with("memory"))
+      return &other;
+  return nullptr;
+}
+
+class Mapper {
+ public:
+  Mapper(const std::vector<PublishedRow>& rows, const fs::path& folder)
+      : rows_(rows),
+        folder_(folder),
+        uses_((folder / "uses.csv").string(), 9),
+        gpus_(read_csv((folder / "gpus.csv").string())),
+        scenes_((folder / "scenes.csv").string(), 4),
+        techniques_((folder / "techniques.csv").string(), 2),
+        passes_((folder / "passes.csv").string(), 3) {}
+
+  std::vector<Cell> run() {
+    std::vector<Cell> cells;
+    for (const PublishedRow& row : rows_) cells.push_back(cell(row));
+    for (const Rules* rules : {&uses_, &scenes_, &techniques_, &passes_}) rules->report_unused(problems_);
+    if (!problems_.empty()) throw InputError(problems_);
+    return cells;
+  }
+
+ private:
+  Cell cell(const PublishedRow& row) {
+    Cell cell;
+    cell.row = row;
+    if (const auto* line = uses_.find(row)) {
+      cell.use = use_from_name(uses_.text(*line, "use"), (folder_ / "uses.csv").string());
+      cell.reason = uses_.text(*line, "reason");
+    } else {
+      cell.use = RowUse::excluded;
+      cell.reason = "no rule in uses.csv";
+    }
+    set_value(cell);
+    if (cell.use != RowUse::claim) cell.has_run = set_run(cell);
+    if (!cell.has_run && (cell.use == RowUse::fitted || cell.use == RowUse::count))
+      problems_.push_back({.code = "M002", .message = "row " + row.id() + " is mapped to no run"});
+    return cell;
+  }
+
+  void set_value(Cell& cell) const {
+    const PublishedRow& row = cell.row;
+    cell.published = row.value;
+    cell.unit = row.quantity == "shaded_samples" || row.quantity == "percent_change_shaded" ? "samples"
+                : row.quantity == "memory_mbytes"                                           ? "mib"
+                                                                                            : "ms";
+    if (!is_percent(row)) return;
+    if (const PublishedRow* reference = reference_of(row, rows_))
+      cell.published = reference->value * (1.0 + row.value / 100.0);
+  }
+
+  bool set_run(Cell& cell) {
+    const PublishedRow& row = cell.row;
+    const auto* scene = scenes_.find(row);
+    const auto* technique = techniques_.find(row);
+    const auto* pass = passes_.find(row);
+    if (!scene || !technique || !pass) return false;
+    RunSpec& run = cell.run;
+    run.scene = scenes_.text(*scene, "stand_in");
+    run.camera = scenes_.text(*scene, "camera");
+    run.point_lights = static_cast<int>(number(scenes_.text(*scene, "point_lights")));
+    run.shadows = scenes_.text(*scene, "shadows") == "yes";
+    run.technique = filled(techniques_.text(*technique, "template"), row);
+    for (const auto& line : gpus_.rows)
+      if (line[0] == row.gpu) run.gpu = line[1];
+    const auto x = row.resolution.find('x');
+    if (run.gpu.empty() || x == std::string::npos) return false;
+    run.width_px = static_cast<int>(number(row.resolution.substr(0, x)));
+    run.height_px = static_cast<int>(number(row.resolution.substr(x + 1)));
+    cell.scene_group = run.scene;
+    cell.passes = passes_.text(*pass, "trace_passes");
+    cell.rate = std::max(1.0, number(row.msaa));
+    return true;
+  }
+
+  const std::vector<PublishedRow>& rows_;
+  fs::path folder_;
+  Rules uses_;
+  CsvFile gpus_;
+  Rules scenes_, techniques_, passes_;
+  std::vector<Diagnostic> problems_;
+};
+
+bool matches_one(std::string_view pattern, std::string_view pass) {
+  if (pattern.ends_with('*')) return pass.starts_with(pattern.substr(0, pattern.size() - 1));
+  return pattern == pass;
+}
+
+}  // namespace
+
+std::string PublishedRow::id() const { return table + ":" + std::to_string(line); }
+
+std::string RunSpec::to_string() const {
+  return technique + " of " + scene + (camera == "0" ? "" : " (" + camera + ")") + " at " +
+         std::to_string(width_px) + "x" + std::to_string(height_px) + ", " + std::to_string(point_lights) +
+         " lights" + (shadows ? ", shadows" : "") + ", on " + gpu;
+}
+
+std::string_view row_use_name(RowUse use) {
+  switch (use) {
+    case RowUse::fitted:
+      return "fitted";
+    case RowUse::derived:
+      return "derived";
+    case RowUse::count:
+      return "count";
+    case RowUse::excluded:
+      return "excluded";
+    case RowUse::claim:
+      return "claim";
+  }
+  return "claim";
+}
+
+std::vector<PublishedRow> load_published(const std::string& published_dir) {
+  std::set<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(published_dir))
+    if (entry.path().extension() == ".csv") files.insert(entry.path());
+  std::vector<PublishedRow> rows;
+  for (const fs::path& path : files) {
+    const CsvFile file = read_csv(path.string());
+    for (std::size_t i = 0; i < file.rows.size(); ++i) {
+      const auto text = [&](std::string_view column) { return file.rows[i][file.column(column)]; };
+      PublishedRow row{path.stem().string(),
+                       file.lines[i],
+                       text("document"),
+                       text("gpu"),
+                       text("resolution"),
+                       text("scene"),
+                       text("view"),
+                       text("technique"),
+                       text("msaa"),
+                       text("surfaces_or_aggregates"),
+                       text("lighting"),
+                       text("pass"),
+                       text("quantity"),
+                       text("value"),
+                       0.0,
+                       text("note")};
+      row.value = number(row.printed);
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+std::vector<Cell> map_rows(const std::vector<PublishedRow>& rows, const std::string& published_dir) {
+  return Mapper(rows, fs::path(published_dir) / "mapping").run();
+}
+
+bool pass_matches(std::string_view patterns, std::string_view pass) {
+  bool found = false;
+  while (!patterns.empty()) {
+    const auto blank = std::min(patterns.find(' '), patterns.size());
+    const std::string_view pattern = patterns.substr(0, blank);
+    if (pattern.starts_with('!')) {
+      if (matches_one(pattern.substr(1), pass)) return false;
+    } else {
+      found = found || matches_one(pattern, pass);
+    }
+    patterns.remove_prefix(std::min(patterns.size(), blank + 1));
+  }
+  return found;
+}
+
+}  // namespace hwsim::cost_models

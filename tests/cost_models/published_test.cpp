@@ -1,0 +1,105 @@
+// The published tables as data: every row is there, has a use with a reason, and stands for a run.
+#include "cost_models/published.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace hwsim::cost_models::test {
+namespace {
+
+const std::string kPublished = std::string(HWSIM_SOURCE_DIR) + "/configs/published";
+
+std::vector<Cell> all_cells() { return map_rows(load_published(kPublished), kPublished); }
+
+/// The cell of a row, by the file and a predicate.
+const Cell& find(const std::vector<Cell>& cells, const std::string& table, const std::string& scene,
+                 const std::string& technique, const std::string& msaa, const std::string& surfaces,
+                 const std::string& lighting, const std::string& pass) {
+  for (const Cell& cell : cells) {
+    const PublishedRow& r = cell.row;
+    if (r.table == table && r.scene == scene && r.technique == technique && r.msaa == msaa &&
+        r.surfaces == surfaces && r.lighting == lighting && r.pass == pass &&
+        (r.quantity == "time_ms" || r.quantity == "percent_change_time"))
+      return cell;
+  }
+  throw std::runtime_error("no such row");
+}
+
+// published/README.md: 318 rows of tables with 317 values, and 113 claims.
+TEST(Published, EveryRowIsLoaded) {
+  std::map<std::string, int> rows;
+  int numbers = 0;
+  for (const PublishedRow& row : load_published(kPublished)) {
+    const bool claims = row.table.ends_with("_claims");
+    ++rows[claims ? "claims" : "tables"];
+    if (!claims && row.printed != "NA") ++numbers;
+  }
+  EXPECT_EQ(rows["tables"], 318);
+  EXPECT_EQ(rows["claims"], 113);
+  EXPECT_EQ(numbers, 317);
+}
+
+TEST(Published, EveryRowHasAUseAndWhatIsNotFittedAReason) {
+  std::map<RowUse, int> uses;
+  std::set<std::string> ids;
+  for (const Cell& cell : all_cells()) {
+    ++uses[cell.use];
+    EXPECT_TRUE(ids.insert(cell.row.id()).second) << cell.row.id();
+    if (cell.use == RowUse::fitted) {
+      EXPECT_TRUE(cell.has_run) << cell.row.id();
+      EXPECT_GT(cell.published, 0.0) << cell.row.id();
+      EXPECT_FALSE(cell.passes.empty()) << cell.row.id();
+    } else if (cell.use != RowUse::count) {
+      EXPECT_FALSE(cell.reason.empty()) << cell.row.id();
+    }
+  }
+  // SSS 8 frames + 6 without the exit + 18 stages, SBAA 24 analyses + 16 references + 46 of 48 changes,
+  // AXAA 14 of 16, AGAA 70 stages.
+  EXPECT_EQ(uses[RowUse::fitted], 8 + 6 + 18 + 24 + 16 + 46 + 14 + 70);
+  EXPECT_EQ(uses[RowUse::count], 8 + 24 - 3 + 8);
+}
+
+TEST(Published, PercentagesBecomeTheAbsoluteTimesThatTheyWerePrintedFrom) {
+  const std::vector<Cell> cells = all_cells();
+  const Cell& top =
+      find(cells, "sbaa_table2_frame_time_memory", "SPONZA", "SBAA-TOP", "8", "2", "simple", "frame");
+  EXPECT_NEAR(top.published, 7.70, 0.005);
+  EXPECT_EQ(top.run.technique, "sbaa_top:n=2,msaa=8");
+  EXPECT_EQ(top.run.gpu, "hd5870");
+  EXPECT_EQ(top.run.width_px, 1280);
+  EXPECT_EQ(top.run.point_lights, 0);
+  // README 18: all of them lie within 0.011 ms of a multiple of 0.1 ms.
+  for (const Cell& cell : cells)
+    if (cell.row.quantity == "percent_change_time") {
+      EXPECT_NEAR(cell.published, std::round(cell.published * 10.0) / 10.0, 0.0111) << cell.row.id();
+    }
+}
+
+TEST(Published, ContradictedRowsAreLeftOut) {
+  for (const Cell& cell : all_cells()) {
+    const PublishedRow& r = cell.row;
+    const bool contradicted = r.quantity == "fps" || (r.gpu == "Radeon HD 7650M" && r.technique == "CMAA");
+    const bool sum = r.document == "AGAA" && r.pass == "frame" && r.quantity == "time_ms";
+    if (contradicted) {
+      EXPECT_EQ(cell.use, RowUse::excluded) << r.id();
+    }
+    if (sum) {
+      EXPECT_EQ(cell.use, RowUse::derived) << r.id();
+    }
+  }
+}
+
+TEST(Published, PatternsSelectPasses) {
+  EXPECT_TRUE(pass_matches("*", "gbuffer"));
+  EXPECT_TRUE(pass_matches("light* resolve", "light_complex"));
+  EXPECT_TRUE(pass_matches("light* resolve", "resolve"));
+  EXPECT_FALSE(pass_matches("light* resolve", "resolve2"));
+  EXPECT_FALSE(pass_matches("* !shadow*", "shadow_clear"));
+  EXPECT_TRUE(pass_matches("* !shadow*", "gbuffer"));
+}
+
+}  // namespace
+}  // namespace hwsim::cost_models::test
