@@ -107,6 +107,8 @@ std::span<const CounterViolation> check_conservation(const PassCounters& c,
                 c.shader.alu_issued_lane_ops_w8);
   check.at_most("shader.alu_issued_lane_ops_w8 <= shader.alu_issued_lane_ops_w64",
                 c.shader.alu_issued_lane_ops_w8, c.shader.alu_issued_lane_ops_w64);
+  check.at_most("shader.same_address_atomic_lane_ops <= shader.atomic_lane_ops",
+                c.shader.same_address_atomic_lane_ops, c.shader.atomic_lane_ops);
   check.at_most("crop.blended_samples <= crop.written_samples", c.crop.blended_samples,
                 c.crop.written_samples);
   check.at_most("zrop.first_touched_tiles <= zrop.touched_tiles", c.zrop.first_touched_tiles,

@@ -64,27 +64,35 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(sample_rate_invocations, "of the invocations, those that ran once for each sample") \
   X(discarded_invocations, "of the invocations, those that ended in a discard")
 
-#define HWSIM_SHADER_COUNTERS(X)                                             \
-  X(alu_lane_ops, "arithmetic of fragment and compute lanes that needed it") \
-  X(alu_issued_lane_ops_w8, "the same with idle lanes, subgroups of 8")      \
-  X(alu_issued_lane_ops_w16, "the same with idle lanes, subgroups of 16")    \
-  X(alu_issued_lane_ops_w32, "the same with idle lanes, subgroups of 32")    \
-  X(alu_issued_lane_ops_w64, "the same with idle lanes, subgroups of 64")    \
-  X(sfu_lane_ops, "special functions of lanes that needed them")             \
-  X(sfu_issued_lane_ops_w8, "the same with idle lanes, subgroups of 8")      \
-  X(sfu_issued_lane_ops_w16, "the same with idle lanes, subgroups of 16")    \
-  X(sfu_issued_lane_ops_w32, "the same with idle lanes, subgroups of 32")    \
-  X(sfu_issued_lane_ops_w64, "the same with idle lanes, subgroups of 64")    \
-  X(interp_lane_ops, "attribute scalars interpolated")                       \
-  X(load_lane_ops, "32-bit loads from buffers and unfiltered image loads")   \
-  X(store_lane_ops, "32-bit stores to buffers")                              \
-  X(atomic_lane_ops, "atomic operations")                                    \
+#define HWSIM_SHADER_COUNTERS(X)                                                                        \
+  X(alu_lane_ops, "arithmetic of fragment and compute lanes that needed it")                            \
+  X(alu_issued_lane_ops_w8, "the same with idle lanes, subgroups of 8")                                 \
+  X(alu_issued_lane_ops_w16, "the same with idle lanes, subgroups of 16")                               \
+  X(alu_issued_lane_ops_w32, "the same with idle lanes, subgroups of 32")                               \
+  X(alu_issued_lane_ops_w64, "the same with idle lanes, subgroups of 64")                               \
+  X(sfu_lane_ops, "special functions of lanes that needed them")                                        \
+  X(sfu_issued_lane_ops_w8, "the same with idle lanes, subgroups of 8")                                 \
+  X(sfu_issued_lane_ops_w16, "the same with idle lanes, subgroups of 16")                               \
+  X(sfu_issued_lane_ops_w32, "the same with idle lanes, subgroups of 32")                               \
+  X(sfu_issued_lane_ops_w64, "the same with idle lanes, subgroups of 64")                               \
+  X(interp_lane_ops, "attribute scalars interpolated")                                                  \
+  X(vliw5_issued_words_w64, "instruction words of five slots, with idle lanes, subgroups of 64")        \
+  X(alu_chain_lane_ops, "operations of the longest chain that waits for each other, summed over lanes") \
+  X(memory_chain_lane_ops, "memory requests of the longest chain, summed over lanes")                   \
+  X(register_lanes, "32-bit registers of an invocation, summed over invocations")                       \
+  X(load_lane_ops, "32-bit loads from buffers")                                                         \
+  X(store_lane_ops, "32-bit stores to buffers")                                                         \
+  X(atomic_lane_ops, "atomic operations")                                                               \
+  X(same_address_atomic_lane_ops, "of these, on the pass's most frequent address")                      \
   X(group_memory_lane_ops, "32-bit accesses to group memory")
 
 #define HWSIM_TEX_COUNTERS(X)                                                                            \
   X(requests, "filtered texture requests, a lane each")                                                  \
   X(bilinear_probes, "bilinear probes: 1 for bilinear, 2 for trilinear, times the anisotropy")           \
-  X(texels, "texels read by the filter")                                                                 \
+  X(fetched_32bit_texels, "texels read unfiltered, up to 32 bit")                                        \
+  X(fetched_64bit_texels, "texels read unfiltered, 64 bit")                                              \
+  X(fetched_128bit_texels, "texels read unfiltered, 128 bit")                                            \
+  X(texels, "texels read, by the filter and unfiltered")                                                 \
   X(touched_lines, "64-byte texture lines missed by a 16 KiB cache that starts cold in each screen bin") \
   X(first_touched_lines, "64-byte texture lines used for the first time in the pass")
 

@@ -78,7 +78,6 @@ inline pipeline::ComputeProgram describe_tile_light(void (*run)(pipeline::GroupB
   program.name = "tile_light";
   program.run = run;
   program.ops = s.blocks();
-  program.ops[kCullBlock].load = 0;  // the light comes from constants, the box from registers
   program.ops[kCullBlock].group_memory = 1;
   program.ops[kTileClassifyBlock].group_memory = 1;
   program.ops[kOtherSampleBlock].group_memory = 1;

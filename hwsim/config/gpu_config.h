@@ -46,14 +46,19 @@ struct GpuValues {
   T alu_efficiency_ratio{1.0};
   T interp_scalars_per_core_clk{0.0};
   bool interp_on_alu = false;
+  T registers_kib_per_core{256.0};
+  T subgroups_per_core_max{48.0};
+  T alu_latency_cycles{8.0};
   T load_words_per_core_clk{16.0};
   T group_memory_words_per_core_clk{32.0};
   T atomic_lane_ops_per_clk{64.0};
+  T atomic_same_address_ops_per_clk{1.0};
 
   T tex_bilinear_per_clk{0.0};
   T tex_64bit_ratio{1.0};
   T tex_128bit_ratio{0.25};
   T tex_efficiency_ratio{1.0};
+  T tex_latency_cycles{150.0};
   T l1_size_kib{16.0};
   T l1_fill_bytes_per_core_clk{64.0};
 
@@ -100,6 +105,8 @@ struct GpuValues {
   T zrop_cache_kib{16.0};
   T l2_size_kib{0.0};
   T l2_bytes_per_clk{0.0};
+  T l2_latency_cycles{220.0};
+  T dram_latency_cycles{400.0};
   T llc_size_kib{0.0};
   T dram_bandwidth_gb_s{0.0};
   T dram_efficiency_ratio{0.8};

@@ -43,6 +43,13 @@ void describe_shader(V& v, GpuValues<T>& c) {
   v.key({"interp_on_alu", 0, 0, kNoFlags,
          "interpolation takes issue slots of the lanes, not of the special functions"},
         c.interp_on_alu);
+  v.key({"registers_kib_per_core", 1, kKibHigh, kRate,
+         "register file: with the shader's registers it bounds the resident subgroups"},
+        c.registers_kib_per_core);
+  v.key({"subgroups_per_core_max", 1, 4096, kRate, "resident subgroups whatever they need"},
+        c.subgroups_per_core_max);
+  v.key({"alu_latency_cycles", 1, 1e4, kCost, "shader clocks from an operation to one that waits for it"},
+        c.alu_latency_cycles);
   v.key({"load_words_per_core_clk", kRateLow, kRateHigh, kRate,
          "32-bit loads and stores a core clock and core"},
         c.load_words_per_core_clk);
@@ -52,16 +59,23 @@ void describe_shader(V& v, GpuValues<T>& c) {
   v.key(
       {"atomic_lane_ops_per_clk", kRateLow, kRateHigh, kFit | kRate, "atomics of the chip, mixed addresses"},
       c.atomic_lane_ops_per_clk);
+  v.key({"atomic_same_address_ops_per_clk", kRateLow, kRateHigh, kFit | kRate, "atomics on one address"},
+        c.atomic_same_address_ops_per_clk);
 }
 
 template <class V, class T>
 void describe_texture(V& v, GpuValues<T>& c) {
-  v.key({"tex_bilinear_per_clk", kRateLow, kRateHigh, kRequired | kRate, "bilinear probes of 32-bit texels"},
+  v.key({"tex_bilinear_per_clk", kRateLow, kRateHigh, kRequired | kRate,
+         "bilinear probes, or unfiltered texels, of 32 bits"},
         c.tex_bilinear_per_clk);
-  v.key({"tex_64bit_ratio", kRatioLow, 1, kRate, "speed of 64-bit texels, relative"}, c.tex_64bit_ratio);
-  v.key({"tex_128bit_ratio", kRatioLow, 1, kRate, "speed of 128-bit texels, relative"}, c.tex_128bit_ratio);
+  v.key({"tex_64bit_ratio", kRatioLow, 1, kRate, "speed of unfiltered 64-bit texels, relative"},
+        c.tex_64bit_ratio);
+  v.key({"tex_128bit_ratio", kRatioLow, 1, kRate, "speed of unfiltered 128-bit texels, relative"},
+        c.tex_128bit_ratio);
   v.key({"tex_efficiency_ratio", kRatioLow, 1, kFit | kRate, "of the probe rate, reached"},
         c.tex_efficiency_ratio);
+  v.key({"tex_latency_cycles", 0, 1e5, kCost, "core clocks of a texture request that hits in L1"},
+        c.tex_latency_cycles);
   v.key({"l1_size_kib", 0.25, kKibHigh, kRate, "texture cache of a core"}, c.l1_size_kib);
   v.key({"l1_fill_bytes_per_core_clk", kRateLow, kRateHigh, kRate, "L2 to L1, a core clock and core"},
         c.l1_fill_bytes_per_core_clk);
@@ -167,6 +181,9 @@ void describe_memory(V& v, GpuValues<T>& c) {
   v.key({"l2_size_kib", 1, kKibHigh, kRequired | kRate, "L2 of the chip (Intel: L3)"}, c.l2_size_kib);
   v.key({"l2_bytes_per_clk", kRateLow, kRateHigh, kRequired | kFit | kRate, "L2 bandwidth"},
         c.l2_bytes_per_clk);
+  v.key({"l2_latency_cycles", 0, 1e5, kCost, "core clocks of a read that hits in L2"}, c.l2_latency_cycles);
+  v.key({"dram_latency_cycles", 0, 1e5, kCost, "core clocks of a read from DRAM, unloaded"},
+        c.dram_latency_cycles);
   v.key({"llc_size_kib", 0, kKibHigh, kRate, "cache between L2 and DRAM (Intel LLC, Infinity Cache, SLC)"},
         c.llc_size_kib);
   v.key({"dram_bandwidth_gb_s", kRateLow, 1e5, kRequired | kFit | kRate, "peak, 1e9 bytes a second"},

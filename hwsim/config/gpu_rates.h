@@ -20,8 +20,11 @@ struct GpuRates {
   T culled_triangle_ns, drawn_triangle_ns;
   T raster_px_ns, raster_sample_ns, raster_tile_ns, hiz_px_ns;
   T zrop_sample_ns;
-  T alu_lane_op_ns, sfu_lane_op_ns, interp_scalar_ns, memory_word_ns, group_memory_word_ns, atomic_ns;
-  T bilinear_probe_ns, probe_64bit_cost, probe_128bit_cost, l1_fill_byte_ns, l1_retouch_ratio;
+  T vliw_word_ns;  ///< zero where words are not of five slots: then the average fill alone says it
+  T shader_cores, subgroups_max, registers, alu_latency_ns, tex_latency_ns, l2_latency_ns, dram_latency_ns;
+  T alu_lane_op_ns, sfu_lane_op_ns, interp_scalar_ns, memory_word_ns, group_memory_word_ns, atomic_ns,
+      same_address_atomic_ns;
+  T bilinear_probe_ns, fetch_64bit_cost, fetch_128bit_cost, l1_fill_byte_ns, l1_retouch_ratio;
   std::array<T, kRateClassCount> color_px_ns,
       blended_px_ns;                               ///< gpus section 0, rule 1: min(raster, export, ROP)
   std::array<T, kRateClassCount> color_sample_ns;  ///< multisample writes, the ROPs alone
@@ -32,6 +35,7 @@ struct GpuRates {
   T clear_color_tile_bytes, clear_depth_tile_bytes;
   T pass_overhead_ns, roofline_exponent;
   int subgroup_size, queue_depth_chunks, queue_slices_min;
+  bool vliw;  ///< special functions take a slot of the words
   bool interp_on_alu, crop_compressible_at_pixel_rate, msaa_color_compression, rop_through_l2, tile_based;
   bool fast_clear_color, fast_clear_depth;
 };
@@ -91,6 +95,19 @@ template <class T>
 void derive_shader(const GpuValues<T>& c, const T& clk_ns, GpuRates<T>& r) {
   const T shader_clk_ns = clk_ns / c.shader_clock_ratio;
   const T lanes = c.shader_cores * c.fp32_lanes_per_core * c.vliw_fill_slots / c.vliw_slots;
+  constexpr double kCountedVliwSlots = 5.0, kRegisterBytes = 4.0;
+  r.vliw = c.vliw_slots > T(1.0);
+  r.vliw_word_ns = T(0.0);
+  if (!(c.vliw_slots < T(kCountedVliwSlots)) && !(T(kCountedVliwSlots) < c.vliw_slots))
+    r.vliw_word_ns =
+        shader_clk_ns * c.vliw_slots / (c.shader_cores * c.fp32_lanes_per_core * c.alu_efficiency_ratio);
+  r.shader_cores = c.shader_cores;
+  r.subgroups_max = c.subgroups_per_core_max;
+  r.registers = c.registers_kib_per_core * (1024.0 / kRegisterBytes);
+  r.alu_latency_ns = c.alu_latency_cycles * shader_clk_ns;
+  r.tex_latency_ns = c.tex_latency_cycles * clk_ns;
+  r.l2_latency_ns = c.l2_latency_cycles * clk_ns;
+  r.dram_latency_ns = c.dram_latency_cycles * clk_ns;
   r.alu_lane_op_ns = shader_clk_ns / (lanes * c.alu_efficiency_ratio);
   r.sfu_lane_op_ns = shader_clk_ns / (c.shader_cores * c.sfu_lanes_per_core);
   r.interp_scalar_ns = shader_clk_ns / (c.shader_cores * c.interp_scalars_per_core_clk);
@@ -98,6 +115,7 @@ void derive_shader(const GpuValues<T>& c, const T& clk_ns, GpuRates<T>& r) {
   r.memory_word_ns = clk_ns / (c.shader_cores * c.load_words_per_core_clk);
   r.group_memory_word_ns = clk_ns / (c.shader_cores * c.group_memory_words_per_core_clk);
   r.atomic_ns = clk_ns / c.atomic_lane_ops_per_clk;
+  r.same_address_atomic_ns = clk_ns / c.atomic_same_address_ops_per_clk;
   r.subgroup_size = c.subgroup_size;
 }
 
@@ -121,8 +139,8 @@ void derive_texture(const GpuValues<T>& c, const T& clk_ns, GpuRates<T>& r) {
   using std::sqrt;
   const T probe_ns = clk_ns / (c.tex_bilinear_per_clk * c.tex_efficiency_ratio);
   r.bilinear_probe_ns = probe_ns;
-  r.probe_64bit_cost = 1.0 / c.tex_64bit_ratio;
-  r.probe_128bit_cost = 1.0 / c.tex_128bit_ratio;
+  r.fetch_64bit_cost = 1.0 / c.tex_64bit_ratio;
+  r.fetch_128bit_cost = 1.0 / c.tex_128bit_ratio;
   r.l1_fill_byte_ns = clk_ns / (c.shader_cores * c.l1_fill_bytes_per_core_clk);
   // The trace counts the misses of 16 KiB. Misses of other sizes follow the square-root rule (Hartstein et
   // al., "On the nature of cache miss behavior: is it sqrt(2)?", 2008), for the re-touches only.

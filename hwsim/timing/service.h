@@ -55,37 +55,80 @@ T vs_ns(const PassCounters& c, const GpuRates<T>& r) {
                 T(static_cast<double>(c.vs.sfu_lane_ops) * r.sfu_lane_op_ns));
 }
 
-/// All that the cores run in the chunk, vertex shading included: pipes run side by side, the fullest sets the
-/// pace.
+/// Subgroups that a core holds at once: its registers, shared by those of the chunk's invocations.
 template <class T>
-T shader_ns(const PassCounters& c, const GpuRates<T>& r) {
+T resident_subgroups(const PassCounters& c, const GpuRates<T>& r) {
+  const auto lanes =
+      static_cast<double>(c.stats.fragment_shader_invocations + c.stats.compute_shader_invocations);
+  const auto registers = static_cast<double>(c.shader.register_lanes);
+  if (lanes <= 0.0 || registers <= 0.0) return r.subgroups_max;
+  return smaller(r.subgroups_max, larger(T(1.0), T(r.registers / (registers / lanes * r.subgroup_size))));
+}
+
+/// Latency of a subgroup's memory request: it waits for the slowest of its lanes, so one line that misses is
+/// enough.
+template <class T>
+T memory_latency_ns(const PassCounters& c, const ChunkTraffic<T>& traffic, const GpuRates<T>& r) {
+  const std::uint64_t fetched =
+      c.tex.fetched_32bit_texels + c.tex.fetched_64bit_texels + c.tex.fetched_128bit_texels;
+  const double requests =
+      static_cast<double>(c.tex.requests + fetched + c.shader.load_lane_ops + c.shader.atomic_lane_ops) /
+      r.subgroup_size;
+  if (requests <= 0.0) return r.tex_latency_ns;
+  const T beyond_l1 = smaller(T(1.0), T(traffic.l1_missed_lines() / requests));
+  const T beyond_l2 = smaller(beyond_l1, T(traffic.l2_missed_lines() / requests));
+  return (1.0 - beyond_l1) * r.tex_latency_ns + (beyond_l1 - beyond_l2) * r.l2_latency_ns +
+         beyond_l2 * r.dram_latency_ns;
+}
+
+/// The cores as a set of subgroups that wait most of the time (Little's law): a subgroup lives for its chain
+/// of operations and memory requests, or as long as the pipes need for it alone; a core holds so many at
+/// once.
+template <class T>
+T latency_bound_ns(const PassCounters& c, const ChunkTraffic<T>& traffic, const T& pipes_ns,
+                   const GpuRates<T>& r) {
+  const T alu_chain = (static_cast<double>(c.shader.alu_chain_lane_ops) / r.subgroup_size) * r.alu_latency_ns;
+  const T memory = (static_cast<double>(c.shader.memory_chain_lane_ops) / r.subgroup_size) *
+                   memory_latency_ns(c, traffic, r);
+  return (memory + larger(alu_chain, T(pipes_ns * r.shader_cores))) /
+         (r.shader_cores * resident_subgroups(c, r));
+}
+
+/// All that the cores run in the chunk, vertex shading included: pipes run side by side, the fullest sets the
+/// pace, unless too few subgroups are there to hide their latency.
+template <class T>
+T shader_ns(const PassCounters& c, const ChunkTraffic<T>& traffic, const GpuRates<T>& r) {
   const IssuedOps issued = issued_ops(c.shader, r.subgroup_size);
   T alu = (static_cast<double>(c.vs.alu_lane_ops) + issued.alu) * r.alu_lane_op_ns;
+  if (r.vliw) {  // a special function takes a slot; words cannot be fuller than chains and t slots allow
+    alu += (static_cast<double>(c.vs.sfu_lane_ops) + issued.sfu) * r.alu_lane_op_ns;
+    alu = larger(alu, T(static_cast<double>(c.shader.vliw5_issued_words_w64) * r.vliw_word_ns));
+  }
   T sfu = (static_cast<double>(c.vs.sfu_lane_ops) + issued.sfu) * r.sfu_lane_op_ns;
   const T interp = static_cast<double>(c.shader.interp_lane_ops) * r.interp_scalar_ns;
   (r.interp_on_alu ? alu : sfu) += interp;
   const T words = static_cast<double>(c.shader.load_lane_ops + c.shader.store_lane_ops) * r.memory_word_ns;
   const T group = static_cast<double>(c.shader.group_memory_lane_ops) * r.group_memory_word_ns;
-  const T atomics = static_cast<double>(c.shader.atomic_lane_ops) * r.atomic_ns;
-  return larger(larger(larger(alu, sfu), larger(words, group)), atomics);
+  const T atomics =
+      larger(T(static_cast<double>(c.shader.atomic_lane_ops) * r.atomic_ns),
+             T(static_cast<double>(c.shader.same_address_atomic_lane_ops) * r.same_address_atomic_ns));
+  const T pipes = larger(larger(larger(alu, sfu), larger(words, group)), atomics);
+  return larger(pipes, latency_bound_ns(c, traffic, pipes, r));
 }
 
-/// Cost of a probe against 32-bit texels, linear in the bytes a texel between the tabulated 4, 8 and 16.
+/// An unfiltered texel takes the place of a probe, a wide one of several. (Filtered textures are 32-bit.)
 template <class T>
-T probe_cost(double bytes_per_texel, const GpuRates<T>& r) {
-  if (bytes_per_texel <= 4.0) return T(1.0);
-  if (bytes_per_texel <= 8.0) return 1.0 + (r.probe_64bit_cost - 1.0) * ((bytes_per_texel - 4.0) / 4.0);
-  const double part = std::min(1.0, (bytes_per_texel - 8.0) / 8.0);
-  return r.probe_64bit_cost + (r.probe_128bit_cost - r.probe_64bit_cost) * part;
+T fetch_ns(const PassCounters& c, const GpuRates<T>& r) {
+  return (static_cast<double>(c.tex.fetched_32bit_texels) +
+          static_cast<double>(c.tex.fetched_64bit_texels) * r.fetch_64bit_cost +
+          static_cast<double>(c.tex.fetched_128bit_texels) * r.fetch_128bit_cost) *
+         r.bilinear_probe_ns;
 }
 
 template <class T>
 T tex_ns(const PassCounters& c, const T& l1_fill_bytes, const GpuRates<T>& r) {
-  const double bytes =
-      c.tex.texels == 0 ? 4.0
-                        : static_cast<double>(c.mem.texture_read_bytes) / static_cast<double>(c.tex.texels);
-  const T probes = static_cast<double>(c.tex.bilinear_probes) * r.bilinear_probe_ns * probe_cost(bytes, r);
-  return larger(probes, T(l1_fill_bytes * r.l1_fill_byte_ns));
+  const T probes = static_cast<double>(c.tex.bilinear_probes) * r.bilinear_probe_ns;
+  return larger(T(probes + fetch_ns(c, r)), T(l1_fill_bytes * r.l1_fill_byte_ns));
 }
 
 /// gpus section 5: rop time = max(pixels / pixel rate, uncompressed samples / sample rate), summed over the
@@ -137,7 +180,7 @@ ChunkCost<T> chunk_cost(const PassCounters& c, const PassWork& pass, const PassS
   set(Unit::raster, raster_ns(c, pass, r));
   set(Unit::hiz, static_cast<double>(c.hiz.tested_tiles) * kTilePixels * r.hiz_px_ns);
   set(Unit::zrop, zrop_ns(c, r));
-  set(Unit::shader, shader_ns(c, r));
+  set(Unit::shader, shader_ns(c, traffic, r));
   set(Unit::tex, tex_ns(c, traffic.l1_fill_bytes, r));
   set(Unit::crop, crop_ns(c, pass, r));
   set(Unit::resolve, resolve_ns(c, pass, r));

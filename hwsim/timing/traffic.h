@@ -121,6 +121,12 @@ struct ChunkTraffic {
   StreamBytesOf<T> dram;
   T l2_bytes{0.0};
   T l1_fill_bytes{0.0};
+  /// Lines that a subgroup waits for: textures beyond L1, storage always.
+  T l1_missed_lines() const { return (l1_fill_bytes + storage_read_bytes) / kTextureLineBytes; }
+  T l2_missed_lines() const {
+    return (dram.read[at(Stream::texture)] + dram.read[at(Stream::storage)]) / kTextureLineBytes;
+  }
+  T storage_read_bytes{0.0};
 };
 
 /// Texture lines that miss L1: first touches, and re-touches scaled from the trace's 16 KiB to the GPU's L1.
@@ -145,6 +151,7 @@ ChunkTraffic<T> chunk_traffic(const PassCounters& c, const PassShape& shape, con
     const T bytes(asked.read[i] + asked.write[i]);
     traffic.l2_bytes += i == at(Stream::color) ? T(bytes * model.color_scale) : bytes;
   }
+  traffic.storage_read_bytes = T(asked.read[at(Stream::storage)]);
   const T lines = l1_missed_lines(c, rates);
   const auto first = static_cast<double>(c.tex.first_touched_lines);
   traffic.l1_fill_bytes = lines * kTextureLineBytes;

@@ -46,6 +46,10 @@ void charge(const ShaderOps& ops, const BlockLanes& n, PassCounters& c) {
   s.sfu_issued_lane_ops_w16 += ops.sfu * n.issued[1];
   s.sfu_issued_lane_ops_w32 += ops.sfu * n.issued[2];
   s.sfu_issued_lane_ops_w64 += ops.sfu * n.issued[3];
+  s.vliw5_issued_words_w64 += ops.vliw5_words * n.issued[3];
+  s.alu_chain_lane_ops += ops.alu_chain * n.active;
+  s.memory_chain_lane_ops += ops.memory_chain * n.active;
+  s.register_lanes += ops.registers * n.active;
   s.interp_lane_ops += ops.interp * n.active;
   s.load_lane_ops += ops.load * n.active;
   s.store_lane_ops += ops.store * n.active;
@@ -56,6 +60,13 @@ void charge(const ShaderOps& ops, const BlockLanes& n, PassCounters& c) {
 }
 
 }  // namespace
+
+void charge_texels(const TexelCounts& n, PassCounters& c) {
+  c.tex.texels += n.bits32 + n.bits64 + n.bits128;
+  c.tex.fetched_32bit_texels += n.bits32;
+  c.tex.fetched_64bit_texels += n.bits64;
+  c.tex.fetched_128bit_texels += n.bits128;
+}
 
 bool tests_late(const PipelineState& state, const FragmentProgram* program) {
   if (program == nullptr || state.force_early_z || !(state.depth.test || state.stencil.test)) return false;
@@ -86,7 +97,7 @@ void account_shading(const FragmentBatch& batch, const FragmentProgram& program,
   c.ps.discarded_invocations += static_cast<std::uint64_t>(__builtin_popcountll(batch.discarded_lanes));
   account_blocks(batch.blocks, program.ops, program.block_count, batch.valid_lanes, c);
   c.tex.bilinear_probes += batch.tex_bilinear_probes;
-  c.tex.texels += batch.image_texels;
+  charge_texels(batch.image_texels, c);
   c.mem.texture_read_bytes += batch.image_read_bytes;
   c.mem.storage_read_bytes += batch.storage_read_bytes;
   c.mem.storage_write_bytes += batch.storage_write_bytes;

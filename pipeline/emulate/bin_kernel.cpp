@@ -70,7 +70,7 @@ class BinRunner : private BinShading {
   }
 
   void start_batch() {
-    w_.batch.resources = &c_.resources;
+    w_.batch.resources = &w_.resources;
     w_.batch.texture_tracker = &w_.texture_tracker;
     w_.batch.quad_count = 0;
     w_.batch.sample_index = -1;

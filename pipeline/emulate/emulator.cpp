@@ -210,6 +210,10 @@ class FrameRunner {
       worker.used_lines.assign(textures_.line_count() / 64 + 1, 0);
       worker.texture_tracker.used_lines = &worker.used_lines;
       worker.texture_tracker.missed_lines = 0;
+      worker.resources = c.resources;
+      if (c.pass->storage.empty()) continue;
+      worker.storage_tracker.start();
+      worker.resources.tracker = &worker.storage_tracker;
     }
     for (GpuImage* target : c.color) std::fill(target->touched_chunk.begin(), target->touched_chunk.end(), 0);
     if (c.depth != nullptr) std::fill(c.depth->touched_chunk.begin(), c.depth->touched_chunk.end(), 0);
@@ -240,6 +244,26 @@ class FrameRunner {
       n.mem.texture_read_bytes += 16 * n.tex.bilinear_probes;
     }
     work.unique_storage_bytes = unique_storage(pass, work);
+    if (!pass.storage.empty()) share_same_address(work);
+  }
+
+  // Chunks share the most frequent address in proportion to their atomics.
+  void share_same_address(PassWork& work) const {
+    std::vector<std::uint64_t> sums(StorageTracker::kSlots, 0);
+    for (const BinWorker& worker : workers_)
+      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += worker.storage_tracker.atomics[i];
+    const std::uint64_t hottest = *std::max_element(sums.begin(), sums.end());
+    const std::uint64_t all = total(work).shader.atomic_lane_ops;
+    if (all == 0) return;
+    std::uint64_t before = 0;
+    for (PassCounters& n : work.chunks) {
+      const std::uint64_t after = before + n.shader.atomic_lane_ops;
+      n.shader.same_address_atomic_lane_ops = scaled(hottest, after, all) - scaled(hottest, before, all);
+      before = after;
+    }
+  }
+  static std::uint64_t scaled(std::uint64_t value, std::uint64_t part, std::uint64_t whole) {
+    return static_cast<std::uint64_t>(static_cast<__uint128_t>(std::min(value, whole)) * part / whole);
   }
 
   // Buffers and stored images, or as much of them as was touched at most.
@@ -350,7 +374,7 @@ class FrameRunner {
       batch.height = pass.compute->group_height;
       batch.image_width = pass.width;
       batch.image_height = pass.height;
-      batch.resources = &c.resources;
+      batch.resources = &workers_[w].resources;
       batch.group_memory = memory[w].data();
       batch.program = pass.compute;
       batch.counters = &workers_[w].chunks[group * bands / groups];

@@ -5,6 +5,7 @@
 
 #include "hwsim/counters.h"
 #include "pipeline/emulate/gpu_image.h"
+#include "pipeline/emulate/storage_tracker.h"
 #include "pipeline/raster/sample_pattern.h"
 #include "pipeline/raster/triangle.h"
 #include "pipeline/shade/program.h"
@@ -41,6 +42,7 @@ struct ResourceView {
   std::array<GpuImage*, 2> targets{};  ///< compute passes: images to store to
   std::array<std::uint32_t*, kMaxBufferSlots> buffers{};
   std::array<std::uint64_t, kMaxBufferSlots> buffer_words{};
+  StorageTracker* tracker = nullptr;  ///< of the worker; null in passes without storage buffers
 };
 
 /// How often each lane went through each block of a shader (a loop's body: once for each iteration).
@@ -48,6 +50,14 @@ struct BlockTrips {
   alignas(64) std::array<std::array<std::int32_t, kBatchLanes>, kMaxBlocks> trips;
   std::uint32_t used =
       0;  ///< bit b: trips[b] has been started; others hold garbage. Block 0 is not kept: all lanes, once
+};
+
+/// Unfiltered texels, by size: the texture unit's rate depends on it.
+struct TexelCounts {
+  std::uint64_t bits32 = 0, bits64 = 0, bits128 = 0;  ///< bits32: and smaller
+  void add(std::uint64_t texels, int bytes_per_texel) {
+    (bytes_per_texel <= 4 ? bits32 : bytes_per_texel <= 8 ? bits64 : bits128) += texels;
+  }
 };
 
 struct FragmentBatch {
@@ -79,7 +89,7 @@ struct FragmentBatch {
   std::uint64_t discarded_lanes = 0;
   BlockTrips blocks;
   std::uint64_t tex_bilinear_probes = 0;  ///< beyond the first of each request
-  std::uint64_t image_texels = 0;         ///< unfiltered texels loaded from the pass's images
+  TexelCounts image_texels;               ///< unfiltered texels loaded from the pass's images
   std::uint64_t image_read_bytes = 0;     ///< their bytes
   std::uint64_t storage_read_bytes = 0, storage_write_bytes = 0;  ///< of the pass's buffers
 };

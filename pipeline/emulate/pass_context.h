@@ -42,6 +42,8 @@ struct BinWorker {
   FragmentBatch sample_batch;                         ///< sample-rate shading: the quads that have the sample
   std::array<std::int32_t, kBatchQuads> sample_quad;  ///< of each quad of sample_batch: its number in `batch`
 
+  ResourceView resources;  ///< of the pass, with the trackers of this worker
+  StorageTracker storage_tracker;
   TextureTracker texture_tracker;
   std::vector<std::uint64_t> used_lines;  ///< texture lines of the pass
   std::vector<PassCounters> chunks;
@@ -63,6 +65,9 @@ void run_full_screen_bin(const PassContext& context, int bin, BinWorker& worker)
 
 /// Whether depth and stencil are tested after the shader (techniques 0.4, gpus 10.1).
 bool tests_late(const PipelineState& state, const FragmentProgram* program);
+
+/// Charges unfiltered texels.
+void charge_texels(const TexelCounts& texels, PassCounters& counters);
 
 /// Charges the batch's invocations and their blocks' operations.
 void account_shading(const FragmentBatch& batch, const FragmentProgram& program, bool sample_rate,

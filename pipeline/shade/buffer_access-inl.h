@@ -17,7 +17,9 @@ class BufferAccess {
  public:
   BufferAccess(const ResourceView& resources, int slot)
       : words_(resources.buffers[static_cast<std::size_t>(slot)]),
-        count_(resources.buffer_words[static_cast<std::size_t>(slot)]) {}
+        count_(resources.buffer_words[static_cast<std::size_t>(slot)]),
+        tracker_(resources.tracker),
+        slot_(slot) {}
 
   LaneI load_words(LaneI index, LaneM mask) const {
     HWY_ALIGN std::int32_t at[kVectorLanes], out[kVectorLanes] = {};
@@ -48,9 +50,10 @@ class BufferAccess {
     store(value, from);
     for (std::uint32_t bits = mask_bits(mask); bits != 0; bits &= bits - 1) {
       const int lane = __builtin_ctz(bits);
-      if (holds(at[lane]))
-        out[lane] = static_cast<std::int32_t>(
-            __atomic_fetch_add(words_ + at[lane], static_cast<std::uint32_t>(from[lane]), __ATOMIC_RELAXED));
+      if (!holds(at[lane])) continue;
+      out[lane] = static_cast<std::int32_t>(
+          __atomic_fetch_add(words_ + at[lane], static_cast<std::uint32_t>(from[lane]), __ATOMIC_RELAXED));
+      if (tracker_ != nullptr) tracker_->count_atomic(slot_, at[lane]);
     }
     return load(out);
   }
@@ -60,6 +63,8 @@ class BufferAccess {
 
   std::uint32_t* words_;
   std::uint64_t count_;
+  StorageTracker* tracker_;
+  int slot_;
 };
 
 /// Bytes of one word for each lane of a mask.

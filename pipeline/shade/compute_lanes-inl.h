@@ -31,7 +31,9 @@ class ComputeLanes {
   Vec4<F> load_image(int slot, I x, I y, I sample) {
     const GpuImage& image = *group_.resources->images[static_cast<std::size_t>(slot)];
     const auto lanes = static_cast<std::uint64_t>(__builtin_popcount(mask_bits(live_)));
-    group_.counters->tex.texels += lanes;
+    TexelCounts texels;
+    texels.add(lanes, info(image.format).bytes);
+    charge_texels(texels, *group_.counters);
     group_.counters->mem.texture_read_bytes += lanes * info(image.format).bytes;
     return load_texel(image, x, y, sample);
   }

@@ -23,7 +23,7 @@ class CountFragment {
   using I = CountI;
   using M = CountM;
 
-  CountFragment() : current_(&blocks_[0]) {}
+  CountFragment() = default;
   CountFragment(const CountFragment&) = delete;
   CountFragment& operator=(const CountFragment&) = delete;
 
@@ -37,27 +37,20 @@ class CountFragment {
     reads_coverage_ = true;
     return integer();
   }
-  F facing() { return value(); }
-  F attr(int) {
-    current_->interp += 1;
-    return value();
-  }
+  F facing() { return F(made(OpKind::value)); }
+  F attr(int) { return F(made(OpKind::interp)); }
   Vec3<F> attr3(int k) { return {attr(k), attr(k + 1), attr(k + 2)}; }
   Vec4<F> sample_texture(const TextureView*, int k) {
-    attr(k);
-    attr(k + 1);
-    current_->tex += 1;
-    return {value(), value(), value(), value()};
+    const F u = attr(k), v = attr(k + 1);
+    return four(made(OpKind::texture, u, v));
   }
-  Vec4<F> load_image(int, I, I, I) {
-    current_->load += 1;
-    return {value(), value(), value(), value()};
-  }
+  Vec4<F> load_image(int, I x, I y, I sample) { return four(made(OpKind::fetch, x, y, sample)); }
   int image_width(int) const { return 1; }
   int image_height(int) const { return 1; }
 
   template <class Body>
-  void branch(int block, M, Body&& body) {
+  void branch(int block, M mask, Body&& body) {
+    made(OpKind::output, mask);
     enter(block, body);
   }
   template <class Body>
@@ -65,51 +58,59 @@ class CountFragment {
     enter(block, body);
   }
   template <class Body>
-  void loop(int block, int, M, Body&& body) {
+  void loop(int block, int, M mask, Body&& body) {
+    made(OpKind::output, mask);
     enter(block, [&]() HWY_ATTR { body(0); });
-    blocks_[static_cast<std::size_t>(block)].alu += 2;  // the counter and its comparison
+    recorder_.ops(block).alu += 2;  // the counter and its comparison
   }
-  I load_buffer(int, I, M) {
-    current_->load += 1;
-    return integer();
-  }
-  void store_buffer(int, I, I, M) {
-    current_->store += 1;
+  I load_buffer(int, I index, M mask) { return I(made(OpKind::load, index, mask)); }
+  void store_buffer(int, I index, I value, M mask) {
+    made(OpKind::store, index, value, mask);
     writes_storage_ = true;
   }
-  I atomic_add(int, I, I, M) {
-    current_->atomic += 1;
+  I atomic_add(int, I index, I value, M mask) {
     writes_storage_ = true;
-    return integer();
+    return I(made(OpKind::atomic, index, value, mask));
   }
   std::size_t loop_count(int) const { return 1; }
-  void store_image(int, I, I, I, const Vec4<F>&, M) { current_->store += 1; }
-  void discard(M) { current_->alu += 1; }
-  void output(int target, const Vec4<F>&) { color_outputs_ = std::max(color_outputs_, target + 1); }
+  void store_image(int, I x, I y, I sample, const Vec4<F>& color, M mask) {
+    made(OpKind::output, color.x, color.y, color.z);
+    made(OpKind::output, color.w, sample, mask);
+    made(OpKind::store, x, y);
+  }
+  void discard(M mask) { made(OpKind::alu, mask); }
+  void output(int target, const Vec4<F>& color) {
+    made(OpKind::output, color.x, color.y, color.z);
+    made(OpKind::output, color.w);
+    color_outputs_ = std::max(color_outputs_, target + 1);
+  }
 
-  const BlockOps& blocks() const { return blocks_; }
-  int block_count() const { return block_count_; }
+  BlockOps blocks() const { return recorder_.finish(); }
+  int block_count() const { return recorder_.block_count(); }
   int color_outputs() const { return color_outputs_; }
   bool writes_storage() const { return writes_storage_; }
   bool reads_coverage() const { return reads_coverage_; }
 
  private:
-  F value() { return F(&current_); }
-  I integer() { return I(&current_); }
+  CountValue made(OpKind kind, CountValue a = {}, CountValue b = {}, CountValue c = {}) {
+    return {&recorder_, recorder_.add(kind, {a.op, b.op, c.op})};
+  }
+  I integer() { return I(made(OpKind::value)); }
+  Vec4<F> four(CountValue request) {
+    return {F(request), F(made(OpKind::value, request)), F(made(OpKind::value, request)),
+            F(made(OpKind::value, request))};
+  }
   template <class Body>
   void enter(int block, Body&& body) {
-    ShaderOps* outer = current_;
-    current_ = &blocks_.at(static_cast<std::size_t>(block));
-    block_count_ = std::max(block_count_, block + 1);
-    current_->alu += 1;  // the branch itself
+    const int outer = recorder_.block();
+    recorder_.enter(block);
+    recorder_.ops().alu += 1;  // the branch itself
     body();
-    current_ = outer;
+    recorder_.enter(outer);
   }
 
   MaterialView material_;
-  BlockOps blocks_{};
-  ShaderOps* current_;
-  int block_count_ = 1;
+  OpRecorder recorder_;
   int color_outputs_ = 0;
   bool reads_coverage_ = false;
   bool writes_storage_ = false;

@@ -1,149 +1,105 @@
 #pragma once
 // The counting lane type: shaders instantiated on it charge their operations to the current block instead of
-// running. A multiplication whose result goes straight into an addition is one fused operation, as every GPU
-// issues it.
+// running, and leave a record of which result each operation waits for. A multiplication whose result goes
+// straight into an addition is one fused operation, as every GPU issues it.
 #include <cstdint>
 
-#include "pipeline/shade/program.h"
+#include "pipeline/shade/op_recorder.h"
 
 namespace hwsim::pipeline {
 
-struct CountM {
-  ShaderOps** ops = nullptr;
+/// A result of the counted program; without a recorder, a constant.
+struct CountValue {
+  OpRecorder* ops = nullptr;
+  int op = -1;  ///< the operation that made it
 };
-struct CountI;
 
-/// A value of the counted program. `ops` points to the counter's current block; null for constants.
-struct CountF {
-  ShaderOps** ops = nullptr;
+struct CountM : CountValue {
+  CountM() = default;
+  explicit CountM(CountValue v) : CountValue(v) {}
+};
+
+struct CountF : CountValue {
   bool product = false;  ///< an addition can absorb it
 
   CountF() = default;
   CountF(float) {}  // NOLINT: constants convert, as in the other lane types
-  explicit CountF(ShaderOps** o, bool is_product = false) : ops(o), product(is_product) {}
+  explicit CountF(CountValue v, bool is_product = false) : CountValue(v), product(is_product) {}
 };
 
-struct CountI {
-  ShaderOps** ops = nullptr;
+struct CountI : CountValue {
   CountI() = default;
   CountI(std::int32_t) {}  // NOLINT
-  explicit CountI(ShaderOps** o) : ops(o) {}
+  explicit CountI(CountValue v) : CountValue(v) {}
 };
 
 namespace count_detail {
-inline ShaderOps** either(ShaderOps** a, ShaderOps** b) { return a ? a : b; }
-inline void alu(ShaderOps** ops, std::uint32_t n = 1) {
-  if (ops) (*ops)->alu += n;
+inline CountValue record(OpKind kind, CountValue a, CountValue b = {}, CountValue c = {}) {
+  OpRecorder* ops = a.ops ? a.ops : b.ops ? b.ops : c.ops;
+  if (ops == nullptr) return {};
+  return {ops, ops->add(kind, {a.op, b.op, c.op})};
 }
-inline void sfu(ShaderOps** ops, std::uint32_t n = 1) {
-  if (ops) (*ops)->sfu += n;
+inline CountValue alu(CountValue a, CountValue b = {}, CountValue c = {}) {
+  return record(OpKind::alu, a, b, c);
 }
 inline CountF sum(CountF a, CountF b) {
-  ShaderOps** ops = either(a.ops, b.ops);
-  const bool fused = (a.product && a.ops) || (b.product && b.ops);
-  alu(ops, fused ? 0 : 1);  // the multiplication was charged already
-  return CountF(ops);
+  const bool first = a.product && a.ops, second = b.product && b.ops;
+  if (first) return CountF(record(OpKind::fused, a, b));  // the multiplication was charged already
+  if (second) return CountF(record(OpKind::fused, b, a));
+  return CountF(alu(a, b));
 }
-inline CountF one_alu(CountF a, CountF b) {
-  ShaderOps** ops = either(a.ops, b.ops);
-  alu(ops);
-  return CountF(ops);
-}
-inline CountM compare(ShaderOps** ops) {
-  alu(ops);
-  return {ops};
-}
-inline CountI int_alu(CountI a, CountI b) {
-  ShaderOps** ops = either(a.ops, b.ops);
-  alu(ops);
-  return CountI(ops);
-}
+inline CountF sfu(CountF a) { return CountF(record(OpKind::sfu, a)); }
 }  // namespace count_detail
 
 inline CountF operator+(CountF a, CountF b) { return count_detail::sum(a, b); }
 inline CountF operator-(CountF a, CountF b) { return count_detail::sum(a, b); }
-inline CountF operator*(CountF a, CountF b) {
-  ShaderOps** ops = count_detail::either(a.ops, b.ops);
-  count_detail::alu(ops);
-  return CountF(ops, true);
-}
+inline CountF operator*(CountF a, CountF b) { return CountF(count_detail::alu(a, b), true); }
 inline CountF operator/(CountF a, CountF b) {
-  ShaderOps** ops = count_detail::either(a.ops, b.ops);
-  count_detail::sfu(ops);
-  count_detail::alu(ops);
-  return CountF(ops, true);
+  const CountF reciprocal = count_detail::sfu(b.ops ? b : a);
+  return CountF(count_detail::alu(a, reciprocal), true);
 }
 inline CountF operator-(CountF a) { return a; }  // a source modifier
 inline CountF abs(CountF a) { return a; }        // likewise
-inline CountF min(CountF a, CountF b) { return count_detail::one_alu(a, b); }
-inline CountF max(CountF a, CountF b) { return count_detail::one_alu(a, b); }
-inline CountF floor(CountF a) { return count_detail::one_alu(a, a); }
-inline CountF sqrt(CountF a) {
-  count_detail::sfu(a.ops);
-  count_detail::alu(a.ops);
-  return CountF(a.ops);
-}
-inline CountF rsqrt(CountF a) {
-  count_detail::sfu(a.ops);
-  return CountF(a.ops);
-}
-inline CountF exp2(CountF a) { return rsqrt(a); }
-inline CountF log2(CountF a) { return rsqrt(a); }
-inline CountM operator<(CountF a, CountF b) {
-  return count_detail::compare(count_detail::either(a.ops, b.ops));
-}
+inline CountF min(CountF a, CountF b) { return CountF(count_detail::alu(a, b)); }
+inline CountF max(CountF a, CountF b) { return CountF(count_detail::alu(a, b)); }
+inline CountF floor(CountF a) { return CountF(count_detail::alu(a)); }
+inline CountF sqrt(CountF a) { return CountF(count_detail::alu(count_detail::sfu(a))); }
+inline CountF rsqrt(CountF a) { return count_detail::sfu(a); }
+inline CountF exp2(CountF a) { return count_detail::sfu(a); }
+inline CountF log2(CountF a) { return count_detail::sfu(a); }
+inline CountM operator<(CountF a, CountF b) { return CountM(count_detail::alu(a, b)); }
 inline CountM operator<=(CountF a, CountF b) { return a < b; }
 inline CountM operator>(CountF a, CountF b) { return a < b; }
 inline CountM operator>=(CountF a, CountF b) { return a < b; }
-inline CountM operator&(CountM a, CountM b) {
-  ShaderOps** ops = count_detail::either(a.ops, b.ops);
-  count_detail::alu(ops);
-  return {ops};
-}
+inline CountM operator&(CountM a, CountM b) { return CountM(count_detail::alu(a, b)); }
 inline CountM operator|(CountM a, CountM b) { return a & b; }
 inline CountM operator!(CountM a) { return a; }
-inline CountF select(CountM m, CountF a, CountF b) {
-  ShaderOps** ops = count_detail::either(m.ops, count_detail::either(a.ops, b.ops));
-  count_detail::alu(ops);
-  return CountF(ops);
-}
-inline CountI select(CountM m, CountI a, CountI b) {
-  ShaderOps** ops = count_detail::either(m.ops, count_detail::either(a.ops, b.ops));
-  count_detail::alu(ops);
-  return CountI(ops);
-}
-inline CountI operator+(CountI a, CountI b) { return count_detail::int_alu(a, b); }
-inline CountI operator-(CountI a, CountI b) { return count_detail::int_alu(a, b); }
-inline CountI operator*(CountI a, CountI b) { return count_detail::int_alu(a, b); }
-inline CountI operator&(CountI a, CountI b) { return count_detail::int_alu(a, b); }
-inline CountI operator|(CountI a, CountI b) { return count_detail::int_alu(a, b); }
-inline CountI operator^(CountI a, CountI b) { return count_detail::int_alu(a, b); }
+inline CountF select(CountM m, CountF a, CountF b) { return CountF(count_detail::alu(m, a, b)); }
+inline CountI select(CountM m, CountI a, CountI b) { return CountI(count_detail::alu(m, a, b)); }
+inline CountI operator+(CountI a, CountI b) { return CountI(count_detail::alu(a, b)); }
+inline CountI operator-(CountI a, CountI b) { return CountI(count_detail::alu(a, b)); }
+inline CountI operator*(CountI a, CountI b) { return CountI(count_detail::alu(a, b)); }
+inline CountI operator&(CountI a, CountI b) { return CountI(count_detail::alu(a, b)); }
+inline CountI operator|(CountI a, CountI b) { return CountI(count_detail::alu(a, b)); }
+inline CountI operator^(CountI a, CountI b) { return CountI(count_detail::alu(a, b)); }
 template <int kBits>
 CountI shift_left(CountI a) {
-  return count_detail::int_alu(a, a);
+  return CountI(count_detail::alu(a));
 }
 template <int kBits>
 CountI shift_right(CountI a) {
-  return count_detail::int_alu(a, a);
+  return CountI(count_detail::alu(a));
 }
-inline CountI min(CountI a, CountI b) { return count_detail::int_alu(a, b); }
-inline CountI max(CountI a, CountI b) { return count_detail::int_alu(a, b); }
-inline CountM operator<(CountI a, CountI b) {
-  return count_detail::compare(count_detail::either(a.ops, b.ops));
-}
+inline CountI min(CountI a, CountI b) { return CountI(count_detail::alu(a, b)); }
+inline CountI max(CountI a, CountI b) { return CountI(count_detail::alu(a, b)); }
+inline CountM operator<(CountI a, CountI b) { return CountM(count_detail::alu(a, b)); }
 inline CountM operator>(CountI a, CountI b) { return a < b; }
 inline CountM operator==(CountI a, CountI b) { return a < b; }
 inline CountM operator!=(CountI a, CountI b) { return a < b; }
-inline CountI to_int(CountF a) {
-  count_detail::alu(a.ops);
-  return CountI(a.ops);
-}
-inline CountF to_float(CountI a) {
-  count_detail::alu(a.ops);
-  return CountF(a.ops);
-}
-inline CountF bits_to_float(CountI a) { return CountF(a.ops); }
-inline CountI float_to_bits(CountF a) { return CountI(a.ops); }
+inline CountI to_int(CountF a) { return CountI(count_detail::alu(a)); }
+inline CountF to_float(CountI a) { return CountF(count_detail::alu(a)); }
+inline CountF bits_to_float(CountI a) { return CountF(CountValue(a)); }
+inline CountI float_to_bits(CountF a) { return CountI(CountValue(a)); }
 inline bool any(CountM) { return true; }
 
 }  // namespace hwsim::pipeline

@@ -100,7 +100,7 @@ class FragmentLanes {
   Vec4<F> load_image(int slot, I x, I y, I sample) {
     const GpuImage& image = *batch_.resources->images[static_cast<std::size_t>(slot)];
     const auto lanes = static_cast<std::uint64_t>(__builtin_popcount(mask_bits(live_)));
-    batch_.image_texels += lanes;
+    batch_.image_texels.add(lanes, info(image.format).bytes);
     batch_.image_read_bytes += lanes * info(image.format).bytes;
     return load_texel(image, x, y, sample);
   }

@@ -59,20 +59,22 @@ struct VertexAttributes {
 class CountVertex : public VertexAttributes {
  public:
   using F = CountF;
-  F attribute(int, int) { return F(&current_); }
+  F attribute(int, int) { return F(CountValue{&recorder_, recorder_.add(OpKind::value, {-1, -1, -1})}); }
   Vec3<F> attribute3(int a) { return {attribute(a, 0), attribute(a, 1), attribute(a, 2)}; }
   F constant(float c) { return F(c); }
   F world(int, const Vec3<F>& v) { return ((F(1.0f) * v.x + F(1.0f) * v.y) + F(1.0f) * v.z) + F(1.0f); }
   F world_direction(int, const Vec3<F>& v) { return (F(1.0f) * v.x + F(1.0f) * v.y) + F(1.0f) * v.z; }
   F normal(int row, const Vec3<F>& v) { return world_direction(row, v); }
-  void clip(int, F) {}
-  void varying(int index, F) { varyings_ = std::max(varyings_, index + 1); }
-  const ShaderOps& ops() const { return ops_; }
+  void clip(int, F value) { recorder_.add(OpKind::output, {value.op, -1, -1}); }
+  void varying(int index, F value) {
+    recorder_.add(OpKind::output, {value.op, -1, -1});
+    varyings_ = std::max(varyings_, index + 1);
+  }
+  ShaderOps ops() const { return recorder_.finish()[0]; }
   int varyings() const { return varyings_; }
 
  private:
-  ShaderOps ops_;
-  ShaderOps* current_ = &ops_;
+  OpRecorder recorder_;
   int varyings_ = 0;
 };
 

@@ -17,10 +17,15 @@ struct ShaderOps {
   std::uint32_t sfu = 0;     ///< reciprocal, square root, exp2, log2, sine, cosine
   std::uint32_t interp = 0;  ///< attribute scalars
   std::uint32_t tex = 0;     ///< filtered texture requests
-  std::uint32_t load = 0;    ///< 32-bit words loaded from images and buffers
+  std::uint32_t load = 0;    ///< 32-bit words loaded from buffers
   std::uint32_t store = 0;
   std::uint32_t atomic = 0;
   std::uint32_t group_memory = 0;
+
+  std::uint32_t alu_chain = 0;     ///< longest chain of operations that wait for each other
+  std::uint32_t memory_chain = 0;  ///< of texture requests, loads and atomics that do
+  std::uint32_t vliw5_words = 0;   ///< five-slot words at best: slots, t slots and the chain bound them
+  std::uint32_t registers = 0;     ///< values alive at once, in block 0 for the whole shader
 };
 
 /// A shader is cut into blocks at its branches and loops. Block 0 runs for every lane.

@@ -75,11 +75,18 @@ std::vector<PassWork> single_path_passes() {
       pass_of([](PassCounters& c) { c.shader.group_memory_lane_ops = 999; }),
       pass_of([](PassCounters& c) { c.shader.atomic_lane_ops = 999; }),
       pass_of([](PassCounters& c) { c.tex.bilinear_probes = 999; }),
+      pass_of([](PassCounters& c) { c.tex.fetched_64bit_texels = 999; }),
+      pass_of([](PassCounters& c) { c.tex.fetched_128bit_texels = 999; }),
+      pass_of([](PassCounters& c) { c.shader.same_address_atomic_lane_ops = 999; }),
       pass_of([](PassCounters& c) {
-        c.tex.bilinear_probes = c.tex.texels = 999, c.mem.texture_read_bytes = 8 * 999;
+        c.stats.fragment_shader_invocations = c.shader.alu_chain_lane_ops = 9999;
+        c.shader.register_lanes = 9999;
       }),
       pass_of([](PassCounters& c) {
-        c.tex.bilinear_probes = c.tex.texels = 999, c.mem.texture_read_bytes = 16 * 999;
+        c.stats.fragment_shader_invocations = c.shader.memory_chain_lane_ops = 9'999'999;
+        c.shader.register_lanes = 9'999'999 * std::uint64_t{200};
+        c.tex.requests = 9999;
+        c.tex.texels = 9'999, c.tex.touched_lines = 100, c.tex.first_touched_lines = 20;
       }),
       pass_of([](PassCounters& c) { c.tex.touched_lines = 999, c.tex.texels = 99'999; }),
       pass_of([](PassCounters& c) { c.resolve.read_samples = 999; }),
@@ -126,6 +133,7 @@ TEST(Keys, EachOneMovesSomePassOfSomeGpu) {
   on_chip.zrop_efficiency_ratio = on_chip.crop_efficiency_ratio = on_chip.blend_rgba8_ratio = 0.5;
   GpuConfig own_caches = on_chip;
   own_caches.rop_through_l2 = false;
+  own_caches.vliw_slots = own_caches.vliw_fill_slots = 1;
   own_caches.export_px_per_clk = 1000;  // the ROPs limit
   own_caches.raster_px_per_engine_clk = 100;
   GpuConfig slow_l2 = on_chip;

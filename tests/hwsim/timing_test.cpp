@@ -142,21 +142,6 @@ TEST(Shader, InterpolationAddsToThePipeThatRunsIt) {
   EXPECT_NEAR(time_one(repeated(PassKind::full_screen, c, 64), gpu).time_ns, 64 * 3.0, 1e-9);
 }
 
-TEST(Texture, WiderTexelsCostTheRatioOfTheirSize) {
-  const auto probes_per_clk = [](std::uint64_t bytes) {
-    PassCounters c;
-    c.tex.bilinear_probes = 4000;
-    c.tex.texels = 16'000;
-    c.mem.texture_read_bytes = 16'000 * bytes;
-    return 4000.0 * kManyChunks /
-           time_one(repeated(PassKind::full_screen, c, kManyChunks), sample_gpu()).time_ns;
-  };
-  EXPECT_NEAR(probes_per_clk(1), 40.0, 0.4);
-  EXPECT_NEAR(probes_per_clk(4), 40.0, 0.4);
-  EXPECT_NEAR(probes_per_clk(8), 20.0, 0.2);
-  EXPECT_NEAR(probes_per_clk(16), 10.0, 0.1);
-}
-
 PassWork color_write_pass(std::uint64_t first_tiles, std::uint64_t tiles) {
   PassCounters c;
   c.crop.touched_tiles = tiles;

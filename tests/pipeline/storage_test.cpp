@@ -81,6 +81,7 @@ TEST(StorageBuffer, AtomicsOfAllThreadsAddUpAndIndicesOutsideAreDropped) {
     EXPECT_EQ(n.mem.storage_write_bytes, 2 * 4 * kPixels);  // one atomic and one store
     EXPECT_EQ(n.mem.storage_read_bytes, 2 * 4 * kPixels);   // one atomic and one load
     EXPECT_EQ(n.shader.atomic_lane_ops, kPixels);
+    EXPECT_EQ(n.shader.same_address_atomic_lane_ops, 6u * kSize);  // each of 15 words; the last got fewer
   }
 }
 

@@ -1,0 +1,122 @@
+#include "pipeline/shade/op_recorder.h"
+
+#include <algorithm>
+
+namespace hwsim::pipeline {
+namespace {
+
+constexpr std::uint32_t kVliwSlots = 5;       // TeraScale: x, y, z, w and t
+constexpr std::uint32_t kInputRegisters = 4;  // position or invocation id, and the barycentric coordinates
+
+void charge(OpKind kind, ShaderOps& ops) {
+  switch (kind) {
+    case OpKind::alu:
+      ops.alu += 1;
+      return;
+    case OpKind::sfu:
+      ops.sfu += 1;
+      return;
+    case OpKind::interp:
+      ops.interp += 1;
+      return;
+    case OpKind::texture:
+      ops.tex += 1;
+      return;
+    case OpKind::fetch:  // charged by texels, where they are read
+      return;
+    case OpKind::load:
+      ops.load += 1;
+      return;
+    case OpKind::store:
+      ops.store += 1;
+      return;
+    case OpKind::atomic:
+      ops.atomic += 1;
+      return;
+    case OpKind::value:
+    case OpKind::fused:
+    case OpKind::output:
+      return;
+  }
+}
+
+bool waits_for_memory(OpKind kind) {
+  return kind == OpKind::texture || kind == OpKind::fetch || kind == OpKind::load || kind == OpKind::atomic;
+}
+bool runs_on_lanes(OpKind kind) {
+  return kind == OpKind::alu || kind == OpKind::sfu || kind == OpKind::interp;
+}
+
+}  // namespace
+
+int OpRecorder::add(OpKind kind, const Operands& operands) {
+  charge(kind, ops());
+  Op op{operands, block_, 0, 0};
+  for (std::size_t i = 0; i < operands.size(); ++i) {
+    if (operands[i] < 0) continue;
+    const Op& from = record_[static_cast<std::size_t>(operands[i])];
+    if (from.block != block_) continue;
+    // The fused operation issues when the addend is there; its product (operand 0) issues with it.
+    const std::uint32_t issue = kind == OpKind::fused && i > 0 ? 1 : 0;
+    op.alu_chain = std::max(op.alu_chain, from.alu_chain + issue);
+    op.memory_chain = std::max(op.memory_chain, from.memory_chain);
+  }
+  op.alu_chain += runs_on_lanes(kind) ? 1 : 0;
+  op.memory_chain += waits_for_memory(kind) ? 1 : 0;
+  record_.push_back(op);
+  return static_cast<int>(record_.size()) - 1;
+}
+
+void OpRecorder::enter(int block) {
+  blocks_.at(static_cast<std::size_t>(block));
+  block_ = block;
+  block_count_ = std::max(block_count_, block + 1);
+}
+
+// Every operation as late as its users allow; a register holds a result from there to its last use.
+std::uint32_t OpRecorder::registers() const {
+  const std::size_t count = record_.size();
+  std::vector<std::uint32_t> height(count, 0);
+  std::uint32_t top = 0;
+  for (std::size_t i = count; i-- > 0;) {
+    top = std::max(top, height[i]);
+    for (const int operand : record_[i].operands)
+      if (operand >= 0)
+        height[static_cast<std::size_t>(operand)] =
+            std::max(height[static_cast<std::size_t>(operand)], height[i] + 1);
+  }
+  std::vector<std::uint32_t> last_use(height);  // as heights: small is late
+  for (std::size_t i = 0; i < count; ++i)
+    for (const int operand : record_[i].operands)
+      if (operand >= 0)
+        last_use[static_cast<std::size_t>(operand)] =
+            std::min(last_use[static_cast<std::size_t>(operand)], height[i]);
+  std::vector<std::int32_t> change(top + 2, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    change[height[i]] += 1;  // walking from the end: alive below its own height, down to its last use
+    change[last_use[i]] -= 1;
+  }
+  std::int32_t live = 0, most = 0;
+  for (std::size_t h = change.size(); h-- > 0;) {
+    live += change[h];
+    most = std::max(most, live);
+  }
+  return static_cast<std::uint32_t>(most) + kInputRegisters;
+}
+
+BlockOps OpRecorder::finish() const {
+  BlockOps blocks = blocks_;
+  for (const Op& op : record_) {
+    ShaderOps& of = blocks[static_cast<std::size_t>(op.block)];
+    of.alu_chain = std::max(of.alu_chain, op.alu_chain);
+    of.memory_chain = std::max(of.memory_chain, op.memory_chain);
+  }
+  for (ShaderOps& of : blocks) {
+    const std::uint32_t slots = (of.alu + of.sfu + kVliwSlots - 1) / kVliwSlots;
+    of.vliw5_words = std::max({of.sfu, slots, std::min(of.alu_chain, of.alu + of.sfu)});
+  }
+  blocks[0].registers = registers();
+  return blocks;
+}
+
+}  // namespace hwsim::pipeline

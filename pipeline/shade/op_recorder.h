@@ -1,0 +1,59 @@
+#pragma once
+// The operations of a shader, recorded while it is counted, with what each waits for. From the record follow
+// the counts of each block, the longest chains of operations that wait for each other, and the registers of
+// an invocation. All of them depend on the graph of operations alone, not on the order in which a compiler of
+// the host evaluated the arguments of a call.
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pipeline/shade/program.h"
+
+namespace hwsim::pipeline {
+
+enum class OpKind : std::uint8_t {
+  value,  ///< costs nothing: an index, a system value, one more component of a texel
+  alu,
+  fused,  ///< an addition that an earlier multiplication absorbs: costs nothing more
+  sfu,
+  interp,
+  texture,
+  fetch,  ///< a texel, unfiltered
+  load,
+  store,
+  atomic,
+  output,  ///< uses values, costs nothing
+};
+
+class OpRecorder {
+ public:
+  using Operands = std::array<int, 3>;  ///< operations by number; -1: none
+
+  /// Charges the current block and returns the operation's number.
+  int add(OpKind kind, const Operands& operands);
+  int block() const { return block_; }
+  void enter(int block);
+  /// Of the block that is being recorded, for what has no operands: branches and loop counters.
+  ShaderOps& ops() { return blocks_[static_cast<std::size_t>(block_)]; }
+  ShaderOps& ops(int block) { return blocks_[static_cast<std::size_t>(block)]; }
+  int block_count() const { return block_count_; }
+
+  /// The blocks, with chains, words and (in block 0) registers filled in.
+  BlockOps finish() const;
+
+ private:
+  struct Op {
+    Operands operands;
+    int block;
+    std::uint32_t alu_chain, memory_chain;  ///< longest, of its own block, up to here
+  };
+  std::uint32_t registers() const;
+
+  std::vector<Op> record_;
+  BlockOps blocks_{};
+  int block_ = 0;
+  int block_count_ = 1;
+};
+
+}  // namespace hwsim::pipeline

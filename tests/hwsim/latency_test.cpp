@@ -1,0 +1,112 @@
+// Closed forms of the cores' residency, latency, instruction words and contended atomics.
+#include <gtest/gtest.h>
+
+#include "hwsim/sample_gpu.h"
+
+namespace hwsim::test {
+namespace {
+
+constexpr std::uint64_t kLanes = 320'000;  // 10'000 subgroups of 32, 1000 for each of 10 cores
+
+PassWork waiting_pass(std::uint64_t alu_chain, std::uint64_t memory_chain, std::uint64_t registers) {
+  PassCounters c;
+  c.stats.fragment_shader_invocations = kLanes;
+  c.shader.alu_chain_lane_ops = alu_chain * kLanes;
+  c.shader.memory_chain_lane_ops = memory_chain * kLanes;
+  c.shader.register_lanes = registers * kLanes;
+  c.tex.requests = memory_chain * kLanes;
+  return repeated(PassKind::full_screen, c, 1);
+}
+
+GpuConfig latency_gpu() {
+  GpuConfig gpu = sample_gpu();
+  gpu.registers_kib_per_core = 64;  // 16384 registers: 512 for each lane of a subgroup
+  gpu.subgroups_per_core_max = 16;
+  gpu.alu_latency_cycles = 10;
+  gpu.tex_latency_cycles = 100;
+  gpu.l2_latency_cycles = 200;
+  gpu.dram_latency_cycles = 500;
+  return gpu;
+}
+
+double shader_ns(const PassWork& pass, const GpuConfig& gpu) {
+  return time_one(pass, gpu).passes[0].busy_ns[static_cast<std::size_t>(Unit::shader)];
+}
+
+TEST(Latency, ACoreWithNResidentSubgroupsTakesTheLifeOfOneForNOfThem) {
+  // 1000 subgroups a core, 16 at once, each lives 8 x 10 ns.
+  EXPECT_DOUBLE_EQ(shader_ns(waiting_pass(8, 0, 1), latency_gpu()), 1000.0 / 16 * 80);
+  EXPECT_DOUBLE_EQ(shader_ns(waiting_pass(8, 2, 1), latency_gpu()), 1000.0 / 16 * 280);
+}
+
+TEST(Latency, RegistersBoundTheResidentSubgroups) {
+  EXPECT_DOUBLE_EQ(shader_ns(waiting_pass(8, 0, 32), latency_gpu()), 1000.0 / 16 * 80);  // the gate: 16
+  EXPECT_DOUBLE_EQ(shader_ns(waiting_pass(8, 0, 64), latency_gpu()), 1000.0 / 8 * 80);
+  EXPECT_DOUBLE_EQ(shader_ns(waiting_pass(8, 0, 4000), latency_gpu()), 1000.0 * 80);  // one always runs
+}
+
+TEST(Latency, ARequestWaitsForItsSlowestLevel) {
+  PassWork pass = waiting_pass(0, 1, 1);
+  PassCounters& c = pass.chunks[0];
+  c.mem.storage_read_bytes = 64 * 5000;  // half of the 10'000 requests go to L2, and on to DRAM
+  const double half = shader_ns(pass, latency_gpu());
+  EXPECT_NEAR(half, 1000.0 / 16 * (0.5 * 100 + 0.5 * 500), 1e-6);
+  pass.unique_storage_bytes = 64 * 2500;
+  EXPECT_NEAR(shader_ns(pass, latency_gpu()), 1000.0 / 16 * (0.5 * 100 + 0.25 * 200 + 0.25 * 500), 1e-6);
+}
+
+TEST(Latency, IsHiddenByEnoughWork) {
+  PassWork pass = waiting_pass(8, 0, 1);
+  pass.chunks[0].shader.alu_issued_lane_ops_w32 = 100 * kLanes;  // 100 clocks a subgroup and core
+  EXPECT_DOUBLE_EQ(shader_ns(pass, latency_gpu()), 100.0 * 1000);
+}
+
+TEST(Latency, WithOneResidentSubgroupWorkAndMemoryTakeTurns) {
+  GpuConfig gpu = latency_gpu();
+  gpu.subgroups_per_core_max = 1;
+  PassWork pass = waiting_pass(8, 2, 1);
+  pass.chunks[0].shader.alu_issued_lane_ops_w32 = 100 * kLanes;
+  EXPECT_DOUBLE_EQ(shader_ns(pass, gpu), 1000.0 * (100 + 200));
+}
+
+TEST(Vliw, WordsAreNoFullerThanTheShaderAllowsAndNotFullerThanTheAverage) {
+  GpuConfig gpu = sample_gpu();
+  gpu.fp32_lanes_per_core = 80;
+  gpu.sfu_lanes_per_core = 16;
+  gpu.vliw_slots = 5;
+  gpu.vliw_fill_slots = 4;
+  gpu.subgroup_size = 64;
+  PassCounters c;
+  c.shader.alu_issued_lane_ops_w64 = 48'000;
+  c.shader.sfu_issued_lane_ops_w64 = 16'000;
+  c.shader.vliw5_issued_words_w64 = 12'800;  // perfectly packed: the average fill limits
+  EXPECT_DOUBLE_EQ(shader_ns(repeated(PassKind::full_screen, c, 1), gpu), 64'000.0 / (10 * 16 * 4));
+  c.shader.vliw5_issued_words_w64 = 32'000;  // a chain: two slots filled
+  EXPECT_DOUBLE_EQ(shader_ns(repeated(PassKind::full_screen, c, 1), gpu), 32'000.0 / (10 * 16));
+}
+
+TEST(Atomics, OfOneAddressTakeTurns) {
+  GpuConfig gpu = sample_gpu();
+  gpu.atomic_lane_ops_per_clk = 24;
+  gpu.atomic_same_address_ops_per_clk = 1.0 / 9.0;
+  PassCounters c;
+  c.shader.atomic_lane_ops = 2400;
+  EXPECT_DOUBLE_EQ(shader_ns(repeated(PassKind::compute, c, 1), gpu), 100.0);
+  c.shader.same_address_atomic_lane_ops = 2400;
+  EXPECT_NEAR(shader_ns(repeated(PassKind::compute, c, 1), gpu), 21'600.0, 1e-6);
+}
+
+TEST(Texture, UnfilteredTexelsCostTheRatioOfTheirSize) {
+  GpuConfig gpu = sample_gpu();
+  PassCounters c;
+  c.tex.bilinear_probes = 4000;
+  c.tex.fetched_32bit_texels = 400;
+  c.tex.fetched_64bit_texels = 200;
+  c.tex.fetched_128bit_texels = 100;
+  const FrameTiming t = time_one(repeated(PassKind::full_screen, c, 1), gpu);
+  EXPECT_DOUBLE_EQ(t.passes[0].busy_ns[static_cast<std::size_t>(Unit::tex)],
+                   (4000.0 + 400 + 200 * 2 + 100 * 4) / 40);
+}
+
+}  // namespace
+}  // namespace hwsim::test
