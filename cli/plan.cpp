@@ -32,7 +32,7 @@ struct EmulatorSettings {
 };
 template <class Visitor>
 void describe(Visitor& v, EmulatorSettings& s) {
-  v.key({"skip", 0, 0, kNoFlags, "work to leave out: all, none, or some of frustum,accepted_tiles"}, s.skip);
+  v.key({"skip", 0, 0, kNoFlags, "work to leave out: all, none, or some of the skips by name, separated by commas"}, s.skip);
 }
 
 struct TimingSettings {
@@ -97,19 +97,20 @@ Engine plan_engine(const std::string& name, std::vector<Diagnostic>& problems) {
 }
 
 pipeline::SkipSwitches plan_skip(const std::string& text, std::vector<Diagnostic>& problems) {
-  const bool all = text == "all";
-  pipeline::SkipSwitches skip{all, all};
-  if (all || text == "none") return skip;
+  pipeline::SkipSwitches skip;
+  for (const pipeline::SkipInfo& info : pipeline::kSkips) skip.*info.flag = text == "all";
+  if (text == "all" || text == "none") return skip;
+  std::vector<std::string> names = {"all", "none"};
+  for (const pipeline::SkipInfo& info : pipeline::kSkips) names.emplace_back(info.name);
   for (const std::string& name : split_techniques(text)) {
-    if (name == "frustum")
-      skip.frustum = true;
-    else if (name == "accepted_tiles")
-      skip.accepted_tiles = true;
+    const auto* found = std::ranges::find(pipeline::kSkips, name, &pipeline::SkipInfo::name);
+    if (found != pipeline::kSkips.end())
+      skip.*found->flag = true;
     else
-      problems.push_back(problem(
-          "U007",
-          "`emulator.skip` names `" + name + "`, must be all, none, or some of frustum,accepted_tiles",
-          did_you_mean(name, std::vector<std::string>{"all", "none", "frustum", "accepted_tiles"})));
+      problems.push_back(problem("U007",
+                                 "`emulator.skip` names `" + name + "`, must be all, none, or some of " +
+                                     fmt::format("{}", fmt::join(names.begin() + 2, names.end(), ",")),
+                                 did_you_mean(name, names)));
   }
   return skip;
 }

@@ -110,8 +110,14 @@ void check_kind(Reader& reader, const toml::table& table) {
 }
 
 std::string skip_text(const pipeline::SkipSwitches& skip) {
-  if (skip.frustum && skip.accepted_tiles) return "all";
-  return skip.frustum ? "frustum" : skip.accepted_tiles ? "accepted_tiles" : "none";
+  std::string names;
+  std::size_t count = 0;
+  for (const pipeline::SkipInfo& info : pipeline::kSkips) {
+    if (!(skip.*info.flag)) continue;
+    names += (count++ == 0 ? "" : ",") + std::string(info.name);
+  }
+  if (count == pipeline::kSkips.size()) return "all";
+  return count == 0 ? "none" : names;
 }
 
 std::string quoted(const std::string& text) { return to_toml(TomlValue(text)); }

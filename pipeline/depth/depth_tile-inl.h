@@ -1,5 +1,6 @@
 // Coarse and fine depth tests of 8x8 tiles. Per-target include guard.
 #include "pipeline/depth/depth_format.h"
+#include "pipeline/depth/depth_planes.h"
 #include "pipeline/emulate/gpu_image.h"
 #include "pipeline/graph/pipeline_state.h"
 #include "pipeline/raster/coverage-inl.h"
@@ -51,44 +52,48 @@ HWY_INLINE LaneM compare_depth(Compare compare, LaneI a, LaneI b) {
 
 enum class CoarseResult { killed, accepted, ambiguous };
 
-/// The coarse test: bounds of the triangle over the tile against the tile's bounds. The evaluation in the
-/// fine test rounds each of its five operations, so bounds are widened by 2^-20 of the largest term before
-/// they are used.
-inline CoarseResult coarse_test(const RasterTriangle& t, int x, int y, float scale, Compare compare,
-                                std::uint32_t tile_min, std::uint32_t tile_max) {
-  if (compare == Compare::always) return CoarseResult::accepted;
-  if (compare == Compare::never) return CoarseResult::killed;
-  if (compare == Compare::not_equal) return CoarseResult::ambiguous;
-  const float left = static_cast<float>(x - t.reference_x), top = static_cast<float>(y - t.reference_y);
-  const float across = t.z.ddx * 8.0f, down = t.z.ddy * 8.0f;
-  const float corner = t.z.base + t.z.ddx * left + t.z.ddy * top;
-  const float slack = (std::fabs(t.z.base) + std::fabs(t.z.ddx) * (std::fabs(left) + 8.0f) +
-                       std::fabs(t.z.ddy) * (std::fabs(top) + 8.0f)) *
-                      0x1p-20f;
-  const float low = corner + std::min(across, 0.0f) + std::min(down, 0.0f) - slack;
-  const float high = corner + std::max(across, 0.0f) + std::max(down, 0.0f) + slack;
-  const auto clamp01 = [](float v) HWY_ATTR { return v > 0.0f ? (v < 1.0f ? v : 1.0f) : 0.0f; };
-  const std::uint32_t nearest = depth_bits(clamp01(low), scale), farthest = depth_bits(clamp01(high), scale);
+/// What the bounds of new and stored values say about every pair of them.
+inline CoarseResult compare_bounds(Compare compare, std::uint32_t nearest, std::uint32_t farthest,
+                                   std::uint32_t stored_min, std::uint32_t stored_max) {
+  const auto result = [](bool killed, bool accepted) HWY_ATTR {
+    return killed ? CoarseResult::killed : accepted ? CoarseResult::accepted : CoarseResult::ambiguous;
+  };
   switch (compare) {
+    case Compare::never:
+      return CoarseResult::killed;
     case Compare::less:
-      return nearest >= tile_max   ? CoarseResult::killed
-             : farthest < tile_min ? CoarseResult::accepted
-                                   : CoarseResult::ambiguous;
+      return result(nearest >= stored_max, farthest < stored_min);
     case Compare::less_equal:
-      return nearest > tile_max     ? CoarseResult::killed
-             : farthest <= tile_min ? CoarseResult::accepted
-                                    : CoarseResult::ambiguous;
+      return result(nearest > stored_max, farthest <= stored_min);
     case Compare::greater:
-      return farthest <= tile_min ? CoarseResult::killed
-             : nearest > tile_max ? CoarseResult::accepted
-                                  : CoarseResult::ambiguous;
+      return result(farthest <= stored_min, nearest > stored_max);
     case Compare::greater_equal:
-      return farthest < tile_min   ? CoarseResult::killed
-             : nearest >= tile_max ? CoarseResult::accepted
-                                   : CoarseResult::ambiguous;
-    default:  // equal
-      return nearest > tile_max || farthest < tile_min ? CoarseResult::killed : CoarseResult::ambiguous;
+      return result(farthest < stored_min, nearest >= stored_max);
+    case Compare::equal:
+      return result(nearest > stored_max || farthest < stored_min, false);
+    case Compare::not_equal:
+      return CoarseResult::ambiguous;
+    case Compare::always:
+      return CoarseResult::accepted;
   }
+  return CoarseResult::ambiguous;
+}
+
+/// A triangle's plane over its part of the tile at (x, y). Evaluation at samples rounds each of its five
+/// operations, so bounds are widened by 2^-20 of the largest term.
+inline DepthPlane plane_over_tile(const RasterTriangle& t, int x, int y, float scale) {
+  const auto left = static_cast<float>(std::max<int>(x, t.min_x) - t.reference_x),
+             right = static_cast<float>(std::min<int>(x + kBlockPx, t.max_x + 1) - t.reference_x),
+             top = static_cast<float>(std::max<int>(y, t.min_y) - t.reference_y),
+             bottom = static_cast<float>(std::min<int>(y + kBlockPx, t.max_y + 1) - t.reference_y);
+  const float x0 = t.z.ddx * left, x1 = t.z.ddx * right, y0 = t.z.ddy * top, y1 = t.z.ddy * bottom;
+  const float slack =
+      (std::fabs(t.z.base) + std::max(std::fabs(x0), std::fabs(x1)) + std::max(std::fabs(y0), std::fabs(y1))) *
+      0x1p-20f;
+  const float low = t.z.base + std::min(x0, x1) + std::min(y0, y1) - slack;
+  const float high = t.z.base + std::max(x0, x1) + std::max(y0, y1) + slack;
+  const auto clamp01 = [](float v) HWY_ATTR { return v > 0.0f ? (v < 1.0f ? v : 1.0f) : 0.0f; };
+  return {t.z, t.reference_x, t.reference_y, depth_bits(clamp01(low), scale), depth_bits(clamp01(high), scale)};
 }
 
 struct TileDepth {

@@ -1,8 +1,10 @@
 // Depth and stencil tests of a screen bin: coarse, early, late. Per-target include guard.
 #include <cstring>
 
+#include "pipeline/depth/depth_planes-inl.h"
 #include "pipeline/depth/depth_tile-inl.h"
 #include "pipeline/depth/stencil.h"
+#include "pipeline/emulate/depth_traffic.h"
 #include "pipeline/emulate/fragment_setup-inl.h"
 #include "pipeline/emulate/pass_context.h"
 
@@ -23,12 +25,15 @@ class BinDepth {
   BinDepth(const PassContext& context, BinWorker& worker)
       : c_(context), w_(worker), samples_(context.samples) {}
 
-  CoarseResult test_coarse(const RasterTriangle& t, int x, int y, PassCounters& n) const {
-    if (c_.depth == nullptr || !w_.state->depth.test) return CoarseResult::ambiguous;
+  /// `plane` becomes the triangle's plane over the tile.
+  CoarseResult test_coarse(const RasterTriangle& t, int x, int y, DepthPlane& plane, PassCounters& n) const {
+    if (c_.depth == nullptr) return CoarseResult::ambiguous;
+    plane = plane_over_tile(t, x, y, c_.depth_scale);
+    if (!w_.state->depth.test) return CoarseResult::ambiguous;
     const auto block = static_cast<std::size_t>(c_.depth->block_index(x, y));
     n.hiz.tested_tiles += 1;
-    CoarseResult result = coarse_test(t, x, y, c_.depth_scale, w_.state->depth.compare,
-                                      c_.depth->depth_min[block], c_.depth->depth_max[block]);
+    CoarseResult result = compare_bounds(w_.state->depth.compare, plane.nearest, plane.farthest,
+                                         c_.depth->depth_min[block], c_.depth->depth_max[block]);
     if (result == CoarseResult::killed && failing_samples_matter()) result = CoarseResult::ambiguous;
     n.hiz.killed_tiles += result == CoarseResult::killed ? 1 : 0;
     n.hiz.accepted_tiles += result == CoarseResult::accepted ? 1 : 0;
@@ -57,30 +62,62 @@ class BinDepth {
     }
   }
 
-  void test_tile(const RasterTriangle* t, int x, int y, CoarseResult coarse, SampleMasks& masks,
-                 PassCounters& n) {
+  /// A null `plane` tests stencil alone (full-screen passes).
+  void test_tile(const RasterTriangle* t, const DepthPlane* plane, int x, int y, CoarseResult coarse,
+                 SampleMasks& masks) {
     const PipelineState& state = *w_.state;
     const int block = c_.depth->block_index(x, y);
-    c_.depth->use(block);
-    touch_tile(*c_.depth, block, w_.current_chunk, n.zrop);
+    c_.depth->use_planes(block);
+    touch_depth_tile(block);
     std::uint64_t before_depth[kMaxSamples];
     if (state.stencil.test) {
       test_stencil(state.stencil, samples_, c_.depth->stencil_block(block), masks.lanes);
       masks.keep(~std::uint64_t{0}, 0, samples_, samples_);
       std::memcpy(before_depth, masks.lanes, sizeof(std::uint64_t) * static_cast<std::size_t>(samples_));
     }
-    const Compare compare = state.depth.test ? state.depth.compare : Compare::always;
-    const bool write = state.depth.write;
-    const bool known = coarse == CoarseResult::accepted && state.depth.test && c_.skip.accepted_tiles;
-    if (known && !write) {
-      w_.accepted_tiles_skipped += 1;
-    } else if (t != nullptr && (state.depth.test || write)) {  // full-screen passes test stencil alone
-      const TileDepth tile{c_.depth->block(block), &c_.depth->depth_min[static_cast<std::size_t>(block)],
-                           &c_.depth->depth_max[static_cast<std::size_t>(block)], c_.depth_scale};
-      fine_test(compare, write, *t, x, y, c_.positions, tile, masks);
-    }
+    if (plane != nullptr && (state.depth.test || state.depth.write)) test_depth(*t, *plane, x, y, coarse, masks);
     if (state.stencil.test)
       update_stencil(state.stencil, samples_, c_.depth->stencil_block(block), before_depth, masks.lanes);
+    if (writes_depth_image() && (masks.count != 0 || failing_samples_matter()))
+      c_.depth->unsaved[static_cast<std::size_t>(block)] = 1;
+  }
+
+  bool writes_depth_image() const {
+    return w_.state->depth.write ||
+           (w_.state->stencil.test && (w_.state->stencil.on_pass != StencilOp::keep || failing_samples_matter()));
+  }
+
+  void test_depth(const RasterTriangle& t, const DepthPlane& plane, int x, int y, CoarseResult coarse,
+                  SampleMasks& masks) {
+    const PipelineState& state = *w_.state;
+    const int block = c_.depth->block_index(x, y);
+    const auto index = static_cast<std::size_t>(block);
+    const Compare compare = state.depth.test ? state.depth.compare : Compare::always;
+    const bool accepted = coarse == CoarseResult::accepted && state.depth.test && c_.skip.accepted_tiles;
+    w_.accepted_tiles_skipped += accepted && !state.depth.write ? 1 : 0;
+    if (c_.depth->plane_count[index] == 0) {
+      if (accepted && !state.depth.write) return;
+      const TileDepth tile{c_.depth->block(block), &c_.depth->depth_min[index], &c_.depth->depth_max[index],
+                           c_.depth_scale};
+      fine_test(compare, state.depth.write, t, x, y, c_.positions, tile, masks);
+      if (state.depth.write && masks.count == static_cast<std::uint64_t>(samples_ * kBlockLanes))
+        hold_plane({*c_.depth, block, x, y, c_.depth_scale}, plane);
+      return;
+    }
+    const PlaneTile tile{*c_.depth, block, x, y, c_.depth_scale};
+    if (!accepted) test_planes(compare, tile, plane, !c_.skip.plane_tiles, masks);
+    w_.plane_tiles_skipped += c_.skip.plane_tiles ? 1 : 0;
+    if (state.depth.write && masks.count != 0) write_plane(tile, plane, masks);
+  }
+
+  /// Once for each chunk that uses the tile: what memory gave, and what went back to it since.
+  void touch_depth_tile(int block) {
+    const auto i = static_cast<std::size_t>(block);
+    if (c_.depth->touched_chunk[i] == w_.current_chunk + 1) return;
+    save_depth_tile(*c_.depth, block, w_.chunks);
+    PassCounters& n = w_.counters();
+    count_tile_form(kReadTiles, c_.depth->stored_form[i], n.zrop);
+    touch_tile(*c_.depth, block, w_.current_chunk, n.zrop);
   }
 
   static std::uint64_t popcount(std::uint64_t bits) {
@@ -91,7 +128,12 @@ class BinDepth {
     const std::uint64_t tested = masks.count;
     if (tested == 0) return;
     PassCounters& n = w_.counters();
-    test_tile(t, x, y, CoarseResult::ambiguous, masks, n);
+    if (t != nullptr) {
+      const DepthPlane plane = plane_over_tile(*t, x, y, c_.depth_scale);
+      test_tile(t, &plane, x, y, CoarseResult::ambiguous, masks);
+    } else {
+      test_tile(t, nullptr, x, y, CoarseResult::ambiguous, masks);
+    }
     n.zrop.late_z_tested_samples += tested;
     n.zrop.late_z_killed_samples += tested - masks.count;
     count_depth_traffic(tested, masks.count, n);
@@ -126,8 +168,9 @@ class BinDepth {
         hn::Store(plane_at(t->z, x, y), d, values);
       }
       c_.depth->use(w_.block[q]);
-      touch_tile(*c_.depth, w_.block[q], w_.current_chunk, n.zrop);
+      touch_depth_tile(w_.block[q]);
       mask = test_quad(state, q, s, values, mask);
+      if (mask != 0 && writes_depth_image()) c_.depth->unsaved[static_cast<std::size_t>(w_.block[q])] = 1;
       passed += popcount(mask);
     }
     n.zrop.late_z_tested_samples += tested;
@@ -190,15 +233,7 @@ class BinDepth {
       const int block = w_.block[q];
       if (block == last) continue;
       last = block;
-      const auto* stored = reinterpret_cast<const std::int32_t*>(c_.depth->block(block));
-      LaneI lowest = load(stored), highest = lowest;
-      for (int i = kVectorLanes; i < samples_ * kBlockLanes; i += kVectorLanes) {
-        lowest = min(lowest, load(stored + i));
-        highest = max(highest, load(stored + i));
-      }
-      const auto index = static_cast<std::size_t>(block);
-      c_.depth->depth_min[index] = static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(DI(), lowest.v)));
-      c_.depth->depth_max[index] = static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(DI(), highest.v)));
+      read_bounds(*c_.depth, block);
     }
   }
 

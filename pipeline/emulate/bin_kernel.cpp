@@ -92,10 +92,11 @@ class BinRunner : private BinShading {
       for (int x = left; x <= right; x += kBlockPx) {
         if (!coverage.reaches(x, y)) continue;
         n.raster.visited_tiles += 1;
-        const CoarseResult coarse = test_coarse(t, x, y, n);
+        DepthPlane plane;
+        const CoarseResult coarse = test_coarse(t, x, y, plane, n);
         if (coarse == CoarseResult::killed) continue;
         if (!cover(t, coverage, x, y, masks, n)) continue;
-        if (!w_.late_z && !test_early(t, x, y, coarse, masks, n)) continue;
+        if (!w_.late_z && !test_early(t, plane, x, y, coarse, masks, n)) continue;
         if (w_.program != nullptr) append_tile(&t, &segment, &item, x, y, masks, n);
       }
     }
@@ -136,15 +137,15 @@ class BinRunner : private BinShading {
   }
 
   /// Stencil and depth before shading; false when no sample is left.
-  bool test_early(const RasterTriangle& t, int x, int y, CoarseResult coarse, SampleMasks& masks,
-                  PassCounters& n) {
+  bool test_early(const RasterTriangle& t, const DepthPlane& plane, int x, int y, CoarseResult coarse,
+                  SampleMasks& masks, PassCounters& n) {
     const PipelineState& state = *w_.state;
     if (c_.depth == nullptr || !(state.depth.test || state.stencil.test || state.depth.write)) {
       n.stats.samples_passed += masks.count;
       return true;
     }
     const std::uint64_t tested = masks.count;
-    test_tile(&t, x, y, coarse, masks, n);
+    test_tile(&t, &plane, x, y, coarse, masks);
     n.zrop.early_z_tested_samples += tested;
     n.zrop.early_z_killed_samples += tested - masks.count;
     count_depth_traffic(tested, masks.count, n);
@@ -161,7 +162,7 @@ class BinRunner : private BinShading {
     n.raster.covered_samples += masks.count;
     if (c_.depth != nullptr && w_.state->stencil.test && !w_.late_z) {
       const std::uint64_t tested = masks.count;
-      test_tile(nullptr, x, y, CoarseResult::ambiguous, masks, n);
+      test_tile(nullptr, nullptr, x, y, CoarseResult::ambiguous, masks);
       n.zrop.early_z_tested_samples += tested;
       n.zrop.early_z_killed_samples += tested - masks.count;
       count_depth_traffic(tested, masks.count, n);

@@ -8,6 +8,7 @@
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/depth/depth_format.h"
+#include "pipeline/emulate/depth_traffic.h"
 #include "pipeline/emulate/geometry.h"
 #include "pipeline/emulate/material_views.h"
 #include "pipeline/emulate/transfer.h"
@@ -61,8 +62,11 @@ class FrameRunner {
     result.color = read_output();
     result.shading_heat = read_heat();
     result.skipped["frustum"] = skipped_draws_;
-    for (const BinWorker& worker : workers_)
+    result.skipped["single_color_pixels"] = skipped_pixels_;
+    for (const BinWorker& worker : workers_) {
       result.skipped["accepted_tiles"] += worker.accepted_tiles_skipped;
+      result.skipped["plane_tiles"] += worker.plane_tiles_skipped;
+    }
     result.skipped["passes"] = compiled_.culled.size();
   }
 
@@ -158,6 +162,7 @@ class FrameRunner {
     for (const ImageId id : pass.color) c.color.push_back(&image(id));
     bind(pass, c.resources);
     set_positions(pass, c);
+    if (c.depth != nullptr) place_planes(*c.depth, c.positions);
     set_heat(pass, c);
     return c;
   }
@@ -176,6 +181,16 @@ class FrameRunner {
       resources.buffers[i] = words.data();
       resources.buffer_words[i] = words.size();
     }
+  }
+
+  /// Planes were written for other sample positions: only their samples still hold (techniques 9.1).
+  void place_planes(GpuImage& depth, std::span<const SamplePosition> positions) const {
+    const auto same = [](SamplePosition a, SamplePosition b) { return a.x == b.x && a.y == b.y; };
+    if (std::equal(positions.begin(), positions.end(), depth.plane_positions.begin(), depth.plane_positions.end(),
+                   same))
+      return;
+    if (!depth.plane_positions.empty()) depth.expand_all(options_.jobs);
+    depth.plane_positions.assign(positions.begin(), positions.end());
   }
 
   static void set_positions(const Pass& pass, PassContext& c) {
@@ -219,8 +234,14 @@ class FrameRunner {
     if (c.depth != nullptr) std::fill(c.depth->touched_chunk.begin(), c.depth->touched_chunk.end(), 0);
   }
 
+  void save_depth(GpuImage& depth) {
+    for (int block = 0; block < depth.blocks_x * depth.blocks_y; ++block)
+      save_depth_tile(depth, block, workers_.front().chunks);
+  }
+
   // Integer sums: the same whichever worker counted.
   void finish_workers(const Pass& pass, PassWork& work) {
+    if (pass.depth) save_depth(image(pass.depth));
     work.chunks.assign(workers_.front().chunks.size(), PassCounters{});
     for (const BinWorker& worker : workers_)
       for (std::size_t i = 0; i < work.chunks.size(); ++i) work.chunks[i] += worker.chunks[i];
@@ -428,6 +449,7 @@ class FrameRunner {
   int heat_blocks_x_;
   std::vector<std::uint32_t> heat_;
   std::uint64_t skipped_draws_ = 0;
+  std::uint64_t skipped_pixels_ = 0;
 };
 
 }  // namespace

@@ -1,9 +1,11 @@
 #pragma once
 // Runs a frame graph: the image, and every count of work.
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 
 #include "hwsim/work_trace.h"
 #include "pipeline/graph/frame_graph.h"
@@ -14,10 +16,28 @@ namespace hwsim::pipeline {
 /// Work that a scene does not need. Each switch changes neither image nor trace, only the emulator's own
 /// time.
 struct SkipSwitches {
-  bool frustum = true;  ///< instances wholly outside the view volume are not transformed (their culling is
-                        ///< still counted)
-  bool accepted_tiles = true;  ///< per-sample depth tests in tiles that the coarse test accepts whole
+  bool frustum = true;
+  bool accepted_tiles = true;
+  bool plane_tiles = true;
+  bool single_color_pixels = true;
 };
+
+struct SkipInfo {
+  std::string_view name;
+  std::string_view description;
+  bool SkipSwitches::*flag;
+};
+
+/// The switches by name; results count each one's uses under it.
+inline constexpr std::array<SkipInfo, 4> kSkips = {{
+    {"frustum", "instances outside the view volume are not transformed; their culling is still counted",
+     &SkipSwitches::frustum},
+    {"accepted_tiles", "depth tests of samples in tiles that the coarse test accepts whole",
+     &SkipSwitches::accepted_tiles},
+    {"plane_tiles", "depth tests of samples where the bounds of two planes decide", &SkipSwitches::plane_tiles},
+    {"single_color_pixels", "resolving all samples of pixels that hold one color",
+     &SkipSwitches::single_color_pixels},
+}};
 
 struct EmulationOptions {
   int jobs = 1;

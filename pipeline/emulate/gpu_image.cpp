@@ -23,6 +23,11 @@ GpuImage::GpuImage(Format f, int w, int h, int s) : format(f), width(w), height(
   if (format_info.is_depth) {
     depth_min.resize(blocks);
     depth_max.resize(blocks);
+    plane_count.resize(blocks);
+    planes.resize(blocks * kMaxDepthPlanes);
+    plane_lanes.resize(blocks * static_cast<std::size_t>(kMaxDepthPlanes * s));
+    stored_form.resize(blocks, DepthTileForm::raw);
+    unsaved.resize(blocks);
   }
   if (format_info.has_stencil) stencil.resize(blocks * static_cast<std::size_t>(s * kBlockLanes));
 }
@@ -35,9 +40,39 @@ void GpuImage::fill(int block_index) {
   if (!stencil.empty()) std::fill_n(stencil_block(block_index), samples * kBlockLanes, clear_stencil);
 }
 
+void GpuImage::start_planes(int block_index) {
+  const auto i = static_cast<std::size_t>(block_index);
+  cleared[i] = 0;
+  if (!stencil.empty()) std::fill_n(stencil_block(block_index), samples * kBlockLanes, clear_stencil);
+  DepthPlane& plane = tile_planes(block_index)[0];
+  plane = {};
+  plane.z.base = clear_depth;
+  plane.nearest = plane.farthest = clear_words[0];
+  std::fill_n(tile_plane_lanes(block_index), samples, lanes_inside(block_index));
+  plane_count[i] = 1;
+}
+
+std::uint64_t GpuImage::lanes_inside(int block_index) const {
+  const int right = width - block_index % blocks_x * kBlockPx, bottom = height - block_index / blocks_x * kBlockPx;
+  if (right >= kBlockPx && bottom >= kBlockPx) return ~std::uint64_t{0};
+  std::uint64_t inside = 0;
+  for (int lane = 0; lane < kBlockLanes; ++lane)
+    if (lane_x(lane) < right && lane_y(lane) < bottom) inside |= std::uint64_t{1} << lane;
+  return inside;
+}
+
 void GpuImage::use_all(int jobs) {
   parallel_for(static_cast<std::size_t>(blocks_y), jobs, [&](std::size_t row, int) {
     for (int bx = 0; bx < blocks_x; ++bx) use(static_cast<int>(row) * blocks_x + bx);
+  });
+}
+
+void GpuImage::expand_all(int jobs) {
+  parallel_for(static_cast<std::size_t>(blocks_y), jobs, [&](std::size_t row, int) {
+    for (int bx = 0; bx < blocks_x; ++bx) {
+      const int block = static_cast<int>(row) * blocks_x + bx;
+      if (plane_count[static_cast<std::size_t>(block)] != 0) expand_depth_tile(*this, block);
+    }
   });
 }
 

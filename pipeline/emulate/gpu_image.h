@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "hwsim/format.h"
+#include "pipeline/depth/depth_planes.h"
+#include "pipeline/graph/pipeline_state.h"
 
 namespace hwsim::pipeline {
 
@@ -19,6 +21,10 @@ constexpr int lane_of(int x, int y) {
 }
 constexpr int lane_x(int lane) { return (lane & 1) | ((lane >> 1) & 2) | ((lane >> 2) & 4); }
 constexpr int lane_y(int lane) { return ((lane >> 1) & 1) | ((lane >> 2) & 2) | ((lane >> 3) & 4); }
+
+struct GpuImage;
+/// Writes the planes of a tile into its texels (depth/depth_expand.cpp).
+void expand_depth_tile(GpuImage& image, int block_index);
 
 /// Texels are stored tile by tile; in a tile sample by sample; in a sample, for each 32-bit word of a texel,
 /// the 64 lanes. Formats below 32 bits take a word each here; what the simulated GPU allocates is the
@@ -36,9 +42,18 @@ struct GpuImage {
   std::vector<std::uint32_t>
       touched_chunk;  ///< of each tile: 1 + the last chunk of the current pass that used it
 
+  // Depth formats: tiles held as planes; their texels are stale.
+  std::vector<std::uint8_t> plane_count;   ///< of each tile; 0: the texels hold the depth
+  std::vector<DepthPlane> planes;          ///< kMaxDepthPlanes a tile
+  std::vector<std::uint64_t> plane_lanes;  ///< lanes of each sample of each of these planes
+  std::vector<SamplePosition> plane_positions;  ///< where samples lay when the planes were written
+  std::vector<DepthTileForm> stored_form;       ///< of each tile, as last given back to memory
+  std::vector<std::uint8_t> unsaved;            ///< of each tile: 1 when written since
+
   /// A clear only marks its tiles, as hardware's fast clear does; a tile is filled when it is first used.
   std::vector<std::uint8_t> cleared;  ///< of each tile: 1 while its texels are still to be filled
   std::array<std::uint32_t, 4> clear_words{};
+  float clear_depth = 1.0f;
   std::uint8_t clear_stencil = 0;
 
   GpuImage() = default;
@@ -46,11 +61,20 @@ struct GpuImage {
 
   /// Before a tile's texels are read or written.
   void use(int block_index) {
-    if (cleared[static_cast<std::size_t>(block_index)] != 0) fill(block_index);
+    const auto i = static_cast<std::size_t>(block_index);
+    if (cleared[i] != 0) fill(block_index);
+    if (!plane_count.empty() && plane_count[i] != 0) expand_depth_tile(*this, block_index);
+  }
+  /// Before a tile's stencil is used, or its depth where planes will do.
+  void use_planes(int block_index) {
+    if (cleared[static_cast<std::size_t>(block_index)] != 0) start_planes(block_index);
   }
   void fill(int block_index);
+  void start_planes(int block_index);
   /// Before texels anywhere are read: fills what is still marked.
   void use_all(int jobs);
+  /// Texels in place of planes; cleared tiles stay so.
+  void expand_all(int jobs);
 
   std::size_t block_words() const { return static_cast<std::size_t>(samples * words * kBlockLanes); }
   std::uint32_t* block(int block_index) {
@@ -63,6 +87,15 @@ struct GpuImage {
     return stencil.data() +
            static_cast<std::size_t>(block_index) * static_cast<std::size_t>(samples * kBlockLanes);
   }
+  DepthPlane* tile_planes(int block_index) {
+    return planes.data() + static_cast<std::size_t>(block_index) * kMaxDepthPlanes;
+  }
+  /// kMaxDepthPlanes * samples masks.
+  std::uint64_t* tile_plane_lanes(int block_index) {
+    return plane_lanes.data() + static_cast<std::size_t>(block_index * kMaxDepthPlanes * samples);
+  }
+  /// Lanes of a tile that lie in the image.
+  std::uint64_t lanes_inside(int block_index) const;
   int block_index(int x, int y) const { return (y / kBlockPx) * blocks_x + x / kBlockPx; }
   std::size_t word_index(int x, int y, int sample, int word) const {
     return static_cast<std::size_t>(block_index(x, y)) * block_words() +

@@ -49,6 +49,7 @@ struct BinWorker {
   std::vector<PassCounters> chunks;
   std::uint32_t current_chunk = 0;
   std::uint64_t accepted_tiles_skipped = 0;
+  std::uint64_t plane_tiles_skipped = 0;
   const DrawInfo* draw = nullptr;  ///< of the quads in `batch`
   const PipelineState* state = nullptr;
   const FragmentProgram* program = nullptr;

@@ -82,6 +82,9 @@ void clear_image(GpuImage& image, const Pass& pass) {
   if (info(image.format).is_depth) {
     const std::uint32_t bits = depth_bits(pass.clear_depth, depth_scale(image.format));
     image.clear_words = {bits, 0, 0, 0};
+    image.clear_depth = pass.clear_depth;
+    std::fill(image.plane_count.begin(), image.plane_count.end(), 0);
+    std::fill(image.stored_form.begin(), image.stored_form.end(), DepthTileForm::clear);
     std::fill(image.depth_min.begin(), image.depth_min.end(), bits);
     std::fill(image.depth_max.begin(), image.depth_max.end(), bits);
     return;
@@ -99,6 +102,8 @@ void copy_image(const GpuImage& from, GpuImage& to) {
   to.stencil = from.stencil;
   to.depth_min = from.depth_min;
   to.depth_max = from.depth_max;
+  to.plane_count.assign(from.plane_count.size(), 0);  // read with use_all: its texels are valid
+  to.stored_form = from.stored_form;
   std::fill(to.cleared.begin(), to.cleared.end(), 0);
 }
 
