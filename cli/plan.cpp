@@ -1,5 +1,7 @@
 #include "cli/plan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 
@@ -32,7 +34,9 @@ struct EmulatorSettings {
 };
 template <class Visitor>
 void describe(Visitor& v, EmulatorSettings& s) {
-  v.key({"skip", 0, 0, kNoFlags, "work to leave out: all, none, or some of the skips by name, separated by commas"}, s.skip);
+  v.key({"skip", 0, 0, kNoFlags,
+         "work to leave out: all, none, or some of the skips by name, separated by commas"},
+        s.skip);
 }
 
 struct TimingSettings {

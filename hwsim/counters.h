@@ -49,27 +49,29 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(accepted_tiles, "of these, known to pass whole")                    \
   X(ambiguous_tiles, "of these, sent on to the fine test")
 
-#define HWSIM_ZROP_COUNTERS(X)                                                         \
-  X(early_z_tested_samples, "samples tested against depth and stencil before shading") \
-  X(early_z_killed_samples, "of these, that failed")                                   \
-  X(late_z_tested_samples, "samples tested against depth and stencil after shading")   \
-  X(late_z_killed_samples, "of these, that failed")                                    \
-  X(written_samples, "samples whose depth or stencil was written")                     \
-  X(touched_tiles, "8x8 depth tiles used, once for each chunk of work that uses them") \
-  X(first_touched_tiles, "8x8 depth tiles used for the first time in the pass") \
-  X(read_clear_tiles, "8x8 depth tiles that memory gave as fast-cleared") \
-  X(read_one_plane_tiles, "8x8 depth tiles that memory gave as one plane") \
-  X(read_two_plane_tiles, "8x8 depth tiles that memory gave as two planes") \
-  X(read_four_plane_tiles, "8x8 depth tiles that memory gave as three or four planes") \
-  X(read_offset_6_tiles, "8x8 depth tiles that memory gave as 6-bit distances from the nearest or farthest value") \
-  X(read_offset_14_tiles, "8x8 depth tiles that memory gave as 14-bit distances") \
-  X(read_raw_tiles, "8x8 depth tiles that memory gave as its samples") \
-  X(write_clear_tiles, "8x8 depth tiles given back to memory as still clear") \
-  X(write_one_plane_tiles, "8x8 depth tiles given back to memory as one plane") \
-  X(write_two_plane_tiles, "8x8 depth tiles given back to memory as two planes") \
-  X(write_four_plane_tiles, "8x8 depth tiles given back to memory as three or four planes") \
-  X(write_offset_6_tiles, "8x8 depth tiles given back to memory as 6-bit distances from the nearest or farthest value") \
-  X(write_offset_14_tiles, "8x8 depth tiles given back to memory as 14-bit distances") \
+#define HWSIM_ZROP_COUNTERS(X)                                                                    \
+  X(early_z_tested_samples, "samples tested against depth and stencil before shading")            \
+  X(early_z_killed_samples, "of these, that failed")                                              \
+  X(late_z_tested_samples, "samples tested against depth and stencil after shading")              \
+  X(late_z_killed_samples, "of these, that failed")                                               \
+  X(written_samples, "samples whose depth or stencil was written")                                \
+  X(touched_tiles, "8x8 depth tiles used, once for each chunk of work that uses them")            \
+  X(first_touched_tiles, "8x8 depth tiles used for the first time in the pass")                   \
+  X(read_clear_tiles, "8x8 depth tiles that memory gave as fast-cleared")                         \
+  X(read_one_plane_tiles, "8x8 depth tiles that memory gave as one plane")                        \
+  X(read_two_plane_tiles, "8x8 depth tiles that memory gave as two planes")                       \
+  X(read_four_plane_tiles, "8x8 depth tiles that memory gave as three or four planes")            \
+  X(read_offset_6_tiles,                                                                          \
+    "8x8 depth tiles that memory gave as 6-bit distances from the nearest or farthest value")     \
+  X(read_offset_14_tiles, "8x8 depth tiles that memory gave as 14-bit distances")                 \
+  X(read_raw_tiles, "8x8 depth tiles that memory gave as its samples")                            \
+  X(write_clear_tiles, "8x8 depth tiles given back to memory as still clear")                     \
+  X(write_one_plane_tiles, "8x8 depth tiles given back to memory as one plane")                   \
+  X(write_two_plane_tiles, "8x8 depth tiles given back to memory as two planes")                  \
+  X(write_four_plane_tiles, "8x8 depth tiles given back to memory as three or four planes")       \
+  X(write_offset_6_tiles,                                                                         \
+    "8x8 depth tiles given back to memory as 6-bit distances from the nearest or farthest value") \
+  X(write_offset_14_tiles, "8x8 depth tiles given back to memory as 14-bit distances")            \
   X(write_raw_tiles, "8x8 depth tiles given back to memory as its samples")
 
 #define HWSIM_PS_COUNTERS(X)                                                            \

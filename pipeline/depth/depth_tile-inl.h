@@ -87,13 +87,14 @@ inline DepthPlane plane_over_tile(const RasterTriangle& t, int x, int y, float s
              top = static_cast<float>(std::max<int>(y, t.min_y) - t.reference_y),
              bottom = static_cast<float>(std::min<int>(y + kBlockPx, t.max_y + 1) - t.reference_y);
   const float x0 = t.z.ddx * left, x1 = t.z.ddx * right, y0 = t.z.ddy * top, y1 = t.z.ddy * bottom;
-  const float slack =
-      (std::fabs(t.z.base) + std::max(std::fabs(x0), std::fabs(x1)) + std::max(std::fabs(y0), std::fabs(y1))) *
-      0x1p-20f;
+  const float slack = (std::fabs(t.z.base) + std::max(std::fabs(x0), std::fabs(x1)) +
+                       std::max(std::fabs(y0), std::fabs(y1))) *
+                      0x1p-20f;
   const float low = t.z.base + std::min(x0, x1) + std::min(y0, y1) - slack;
   const float high = t.z.base + std::max(x0, x1) + std::max(y0, y1) + slack;
   const auto clamp01 = [](float v) HWY_ATTR { return v > 0.0f ? (v < 1.0f ? v : 1.0f) : 0.0f; };
-  return {t.z, t.reference_x, t.reference_y, depth_bits(clamp01(low), scale), depth_bits(clamp01(high), scale)};
+  return {t.z, t.reference_x, t.reference_y, depth_bits(clamp01(low), scale),
+          depth_bits(clamp01(high), scale)};
 }
 
 struct TileDepth {

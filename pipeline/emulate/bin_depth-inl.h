@@ -75,7 +75,8 @@ class BinDepth {
       masks.keep(~std::uint64_t{0}, 0, samples_, samples_);
       std::memcpy(before_depth, masks.lanes, sizeof(std::uint64_t) * static_cast<std::size_t>(samples_));
     }
-    if (plane != nullptr && (state.depth.test || state.depth.write)) test_depth(*t, *plane, x, y, coarse, masks);
+    if (plane != nullptr && (state.depth.test || state.depth.write))
+      test_depth(*t, *plane, x, y, coarse, masks);
     if (state.stencil.test)
       update_stencil(state.stencil, samples_, c_.depth->stencil_block(block), before_depth, masks.lanes);
     if (writes_depth_image() && (masks.count != 0 || failing_samples_matter()))
@@ -84,7 +85,8 @@ class BinDepth {
 
   bool writes_depth_image() const {
     return w_.state->depth.write ||
-           (w_.state->stencil.test && (w_.state->stencil.on_pass != StencilOp::keep || failing_samples_matter()));
+           (w_.state->stencil.test &&
+            (w_.state->stencil.on_pass != StencilOp::keep || failing_samples_matter()));
   }
 
   void test_depth(const RasterTriangle& t, const DepthPlane& plane, int x, int y, CoarseResult coarse,

@@ -10,9 +10,9 @@ namespace hwsim::pipeline {
 
 using TileCounter = std::uint64_t ZropCounters::*;
 inline constexpr std::array<TileCounter, kDepthTileForms> kReadTiles = {
-    &ZropCounters::read_clear_tiles,      &ZropCounters::read_one_plane_tiles,
-    &ZropCounters::read_two_plane_tiles,  &ZropCounters::read_four_plane_tiles,
-    &ZropCounters::read_offset_6_tiles,   &ZropCounters::read_offset_14_tiles,
+    &ZropCounters::read_clear_tiles,     &ZropCounters::read_one_plane_tiles,
+    &ZropCounters::read_two_plane_tiles, &ZropCounters::read_four_plane_tiles,
+    &ZropCounters::read_offset_6_tiles,  &ZropCounters::read_offset_14_tiles,
     &ZropCounters::read_raw_tiles,
 };
 inline constexpr std::array<TileCounter, kDepthTileForms> kWriteTiles = {

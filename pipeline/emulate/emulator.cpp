@@ -186,8 +186,8 @@ class FrameRunner {
   /// Planes were written for other sample positions: only their samples still hold (techniques 9.1).
   void place_planes(GpuImage& depth, std::span<const SamplePosition> positions) const {
     const auto same = [](SamplePosition a, SamplePosition b) { return a.x == b.x && a.y == b.y; };
-    if (std::equal(positions.begin(), positions.end(), depth.plane_positions.begin(), depth.plane_positions.end(),
-                   same))
+    if (std::equal(positions.begin(), positions.end(), depth.plane_positions.begin(),
+                   depth.plane_positions.end(), same))
       return;
     if (!depth.plane_positions.empty()) depth.expand_all(options_.jobs);
     depth.plane_positions.assign(positions.begin(), positions.end());

@@ -34,7 +34,8 @@ inline constexpr std::array<SkipInfo, 4> kSkips = {{
      &SkipSwitches::frustum},
     {"accepted_tiles", "depth tests of samples in tiles that the coarse test accepts whole",
      &SkipSwitches::accepted_tiles},
-    {"plane_tiles", "depth tests of samples where the bounds of two planes decide", &SkipSwitches::plane_tiles},
+    {"plane_tiles", "depth tests of samples where the bounds of two planes decide",
+     &SkipSwitches::plane_tiles},
     {"single_color_pixels", "resolving all samples of pixels that hold one color",
      &SkipSwitches::single_color_pixels},
 }};

@@ -53,7 +53,8 @@ void GpuImage::start_planes(int block_index) {
 }
 
 std::uint64_t GpuImage::lanes_inside(int block_index) const {
-  const int right = width - block_index % blocks_x * kBlockPx, bottom = height - block_index / blocks_x * kBlockPx;
+  const int right = width - block_index % blocks_x * kBlockPx,
+            bottom = height - block_index / blocks_x * kBlockPx;
   if (right >= kBlockPx && bottom >= kBlockPx) return ~std::uint64_t{0};
   std::uint64_t inside = 0;
   for (int lane = 0; lane < kBlockLanes; ++lane)

@@ -43,9 +43,9 @@ struct GpuImage {
       touched_chunk;  ///< of each tile: 1 + the last chunk of the current pass that used it
 
   // Depth formats: tiles held as planes; their texels are stale.
-  std::vector<std::uint8_t> plane_count;   ///< of each tile; 0: the texels hold the depth
-  std::vector<DepthPlane> planes;          ///< kMaxDepthPlanes a tile
-  std::vector<std::uint64_t> plane_lanes;  ///< lanes of each sample of each of these planes
+  std::vector<std::uint8_t> plane_count;        ///< of each tile; 0: the texels hold the depth
+  std::vector<DepthPlane> planes;               ///< kMaxDepthPlanes a tile
+  std::vector<std::uint64_t> plane_lanes;       ///< lanes of each sample of each of these planes
   std::vector<SamplePosition> plane_positions;  ///< where samples lay when the planes were written
   std::vector<DepthTileForm> stored_form;       ///< of each tile, as last given back to memory
   std::vector<std::uint8_t> unsaved;            ///< of each tile: 1 when written since
