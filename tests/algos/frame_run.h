@@ -10,6 +10,7 @@
 #include "algos/technique.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/scene/scene_source.h"
+#include "support/places.h"
 
 namespace hwsim::test {
 
@@ -30,7 +31,7 @@ inline std::shared_ptr<const pipeline::Scene> generated_scene(const std::string&
   auto& scene = scenes[spec];
   if (!scene)
     scene = std::make_shared<const pipeline::Scene>(
-        pipeline::open_scene(spec, std::string(HWSIM_BINARY_DIR) + "/test_scenes"));
+        pipeline::open_scene(spec, hwsim::test::binary_dir() + "/test_scenes"));
   return scene;
 }
 

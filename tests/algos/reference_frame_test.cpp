@@ -7,6 +7,7 @@
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/image/metrics.h"
 #include "pipeline/scene/scene_source.h"
+#include "support/places.h"
 
 namespace hwsim::algos {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 FrameRequest hall_request() {
   FrameRequest request;
   request.scene = std::make_shared<const pipeline::Scene>(
-      pipeline::open_scene("sponza_hall:bays=3,detail=4", HWSIM_BINARY_DIR "/test-cache/scenes"));
+      pipeline::open_scene("sponza_hall:bays=3,detail=4", hwsim::test::binary_dir() + "/test-cache/scenes"));
   request.width_px = 128;
   request.height_px = 72;
   return request;

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "cli/program.h"
+#include "support/places.h"
 
 namespace hwsim::cli::test {
 namespace {
@@ -82,9 +83,9 @@ TEST(HelpTest, ExplainsExactlyTheCodesThatTheSourcesUse) {
   const std::regex code("\"([A-Z][0-9]{3})\"");
   std::set<std::string> used;
   for (const char* folder : {"hwsim", "pipeline", "algos", "cost_models", "cli"}) {
-    if (!fs::exists(fs::path(HWSIM_SOURCE_DIR) / folder)) continue;
+    if (!fs::exists(fs::path(hwsim::test::source_dir()) / folder)) continue;
     for (const fs::directory_entry& entry :
-         fs::recursive_directory_iterator(fs::path(HWSIM_SOURCE_DIR) / folder)) {
+         fs::recursive_directory_iterator(fs::path(hwsim::test::source_dir()) / folder)) {
       if (entry.path().extension() != ".cpp" || entry.path().filename() == "error_codes.cpp") continue;
       std::ifstream file(entry.path());
       std::ostringstream buffer;

@@ -1,4 +1,5 @@
 #include "cli/program.h"
+#include "support/places.h"
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -49,8 +50,8 @@ Outcome Workplace::shell(const std::string& command) const {
   const fs::path errors = folder_.string() + ".stderr";
   const std::string program_folder = fs::path(HWSIM_PROGRAM).parent_path().string();
   const std::string line = "cd " + quoted(folder_.string()) + " && export PATH=" + quoted(program_folder) +
-                           ":\"$PATH\" HWSIM_CACHE=" + quoted(HWSIM_BINARY_DIR "/test-cache") + " && { " +
-                           command + "\n} 2>" + quoted(errors.string());
+                           ":\"$PATH\" HWSIM_CACHE=" + quoted(hwsim::test::binary_dir() + "/test-cache") +
+                           " && { " + command + "\n} 2>" + quoted(errors.string());
   FILE* pipe = popen(line.c_str(), "r");
   if (!pipe) throw std::runtime_error("popen");
   Outcome outcome;

@@ -1,5 +1,6 @@
 // The published tables as data: every row is there, has a use with a reason, and stands for a run.
 #include "cost_models/published.h"
+#include "support/places.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,7 @@
 namespace hwsim::cost_models::test {
 namespace {
 
-const std::string kPublished = std::string(HWSIM_SOURCE_DIR) + "/configs/published";
+const std::string kPublished = hwsim::test::source_dir() + "/configs/published";
 
 std::vector<Cell> all_cells() { return map_rows(load_published(kPublished), kPublished); }
 

@@ -6,11 +6,12 @@
 
 #include "hwsim/config/gpu_config.h"
 #include "hwsim/sample_gpu.h"
+#include "support/places.h"
 
 namespace hwsim::test {
 namespace {
 
-const std::string kConfigDir = HWSIM_SOURCE_DIR "/configs/gpus";
+const std::string kConfigDir = hwsim::test::source_dir() + "/configs/gpus";
 
 GpuConfig shipped(const std::string& id, std::vector<Assignment> sets = {}) {
   return load_gpu(id, {}, sets, kConfigDir);

@@ -15,6 +15,7 @@
 #include "pipeline/raster/sample_pattern.h"
 #include "pipeline/scene/scene_source.h"
 #include "support/frames.h"
+#include "support/places.h"
 
 namespace hwsim::oracle {
 namespace {
@@ -188,7 +189,7 @@ class LlvmpipeScene : public ::testing::Test {
   }
 
   void expect_explained(const std::string& name) {
-    const auto scene = test::share(open_scene(name, std::string(HWSIM_BINARY_DIR) + "/test_scenes"));
+    const auto scene = test::share(open_scene(name, hwsim::test::binary_dir() + "/test_scenes"));
     for (const int samples : {1, 4}) {
       const Classes c = compare(scene, samples);
       std::printf(
@@ -215,7 +216,7 @@ TEST_F(LlvmpipeScene, ShowsTheSamePrimitivesOfGeneratedScenes) {
 TEST_F(LlvmpipeScene, ShowsTheSamePrimitivesOfScannedScenes) {
   int found = 0;
   for (const char* file : {"dragon_small.glb", "sponza.glb"}) {
-    const std::string path = std::string(HWSIM_SHARED_DIR) + "/scenes/" + file;
+    const std::string path = hwsim::test::shared_dir() + "/scenes/" + file;
     if (!std::filesystem::exists(path)) continue;
     ++found;
     expect_explained(path);

@@ -18,6 +18,7 @@
 #include "pipeline/scene/scene_source.h"
 #include "pipeline/scene_glb.h"
 #include "pipeline/shade/mesh_vertex.h"
+#include "support/places.h"
 
 namespace hwsim::oracle {
 namespace {
@@ -281,7 +282,7 @@ TEST(Visibility, OfRaysAndRasterizerAgreesOnGeneratedScenes) {
 }
 
 TEST(Visibility, OfRaysAndRasterizerAgreesOnRealScenes) {
-  const std::filesystem::path scenes = std::filesystem::path(HWSIM_SHARED_DIR) / "scenes";
+  const std::filesystem::path scenes = std::filesystem::path(hwsim::test::shared_dir()) / "scenes";
   if (!std::filesystem::exists(scenes)) GTEST_SKIP() << "the real scenes are not here";
   for (const char* name : {"dragon_small.glb", "sponza.glb"})
     expect_same_visibility((scenes / name).string(), "");

@@ -9,6 +9,7 @@
 
 #include "pipeline/scene/scene_source.h"
 #include "support/frames.h"
+#include "support/places.h"
 
 namespace hwsim::pipeline {
 namespace {
@@ -87,12 +88,11 @@ TEST(DepthEqual, MeetsThePrePassInEverySampleOfEveryScene) {
   std::vector<std::string> scenes;
   for (const GeneratorInfo& generator : generators()) scenes.push_back(generator.name);
   for (const char* file : {"dragon_small.glb", "sponza.glb"})
-    if (const std::string path = std::string(HWSIM_SHARED_DIR) + "/scenes/" + file;
-        std::filesystem::exists(path))
+    if (const std::string path = hwsim::test::shared_dir() + "/scenes/" + file; std::filesystem::exists(path))
       scenes.push_back(path);
   for (const std::string& name : scenes) {
     SCOPED_TRACE(name);
-    const auto scene = test::share(open_scene(name, std::string(HWSIM_BINARY_DIR) + "/test_scenes"));
+    const auto scene = test::share(open_scene(name, hwsim::test::binary_dir() + "/test_scenes"));
     Figures figures;
     for (const Format format : {Format::d16_unorm, Format::d24_unorm_s8, Format::d32_float}) {
       SCOPED_TRACE(info(format).name);

@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "pipeline/scene/gltf_loader.h"
+#include "support/places.h"
 
 namespace hwsim::pipeline {
 namespace {
 
-const std::string kScenes = std::string(HWSIM_SHARED_DIR) + "/scenes/";
+const std::string kScenes = hwsim::test::shared_dir() + "/scenes/";
 
 struct Expectation {
   std::string file, expect, triangles;

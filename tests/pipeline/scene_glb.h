@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "support/places.h"
+
 namespace hwsim::pipeline::test {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -96,7 +98,7 @@ inline GlbBuilder square_glb() {
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(const std::string& name)
-      : path_(std::filesystem::path(HWSIM_BINARY_DIR) / "test_files" / name) {
+      : path_(std::filesystem::path(hwsim::test::binary_dir()) / "test_files" / name) {
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }

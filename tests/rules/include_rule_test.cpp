@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "support/places.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -21,7 +23,7 @@ const std::map<std::string, std::vector<std::string>> kMayInclude = {
 
 std::vector<fs::path> sources_of(const std::string& folder) {
   std::vector<fs::path> files;
-  const fs::path root = fs::path(HWSIM_SOURCE_DIR) / folder;
+  const fs::path root = fs::path(hwsim::test::source_dir()) / folder;
   if (!fs::exists(root)) return files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root))
     if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp") files.push_back(entry.path());
