@@ -276,7 +276,7 @@ void expect_same_visibility(const std::string& name, const std::string& cache) {
 }
 
 TEST(Visibility, OfRaysAndRasterizerAgreesOnGeneratedScenes) {
-  const test::TemporaryFolder folder("visibility");
+  const pipeline::test::TemporaryFolder folder("visibility");
   for (const char* name : {"dragon:triangles=100000", "sponza_hall", "grass:blades=5000"})
     expect_same_visibility(name, folder.path());
 }
