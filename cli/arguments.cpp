@@ -140,6 +140,9 @@ struct Parser {
   DoctorOptions doctor;
   HelpOptions help;
   CacheOptions cache;
+  FitOptions fit;
+  ValidateOptions validate;
+  ReproduceOptions reproduce;
   CompletionOptions completion;
 
   Parser();
@@ -158,6 +161,7 @@ struct Parser {
   void add_scene();
   void add_config();
   void add_cache();
+  void add_calibration();
   void add_rest();
 };
 
@@ -276,6 +280,31 @@ void Parser::add_cache() {
   add_common(prune, cache.common);
 }
 
+void Parser::add_calibration() {
+  const auto add_papers = [](CLI::App& sub, FitOptions& options) {
+    add_repeatable(sub, "--paper", options.papers, "Only the tables of this paper (repeatable)",
+                   "sss|sbaa|axaa|agaa");
+    sub.add_flag("--dry-run", options.dry_run, "List the rows and the runs that stand for them");
+    add_common(sub, options.common);
+  };
+  CLI::App& fitter = add(app, "fit", kHelpFit, [this] { return Command(fit); });
+  fitter.add_option("--starts", fit.starts, "Starts: the declared one, the others random; default 10")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N");
+  add_out(fitter, fit.out);
+  add_papers(fitter, fit);
+  CLI::App& validator = add(app, "validate", kHelpValidate, [this] { return Command(validate); });
+  add_papers(validator, validate);
+  CLI::App& reproducer = add(app, "reproduce", kHelpReproduce, [this] { return Command(reproduce); });
+  reproducer.add_option("PAPER", reproduce.paper, "sss, sbaa, axaa, agaa or wire_aa")
+      ->required()
+      ->type_name(" ");
+  reproducer.add_option("--out", reproduce.out, "Folder for pictures (SVG) and the table (CSV)")
+      ->type_name("DIR");
+  reproducer.add_flag("--dry-run", reproduce.dry_run, "List the rows and the runs that stand for them");
+  add_common(reproducer, reproduce.common);
+}
+
 void Parser::add_rest() {
   CLI::App& doctor_app = add(app, "doctor", kHelpDoctor, [this] { return Command(doctor); });
   add_common(doctor_app, doctor.common);
@@ -300,6 +329,7 @@ Parser::Parser() {
   add_config();
   add_rest();
   add_cache();
+  add_calibration();
 }
 
 Command Parser::command() const {

@@ -16,6 +16,9 @@ ExitStatus config(const ConfigOptions& options, Context& context);
 ExitStatus doctor(const DoctorOptions& options, Context& context);
 ExitStatus help(const HelpOptions& options, Context& context);
 ExitStatus cache(const CacheOptions& options, Context& context);
+ExitStatus fit(const FitOptions& options, Context& context);
+ExitStatus validate(const ValidateOptions& options, Context& context);
+ExitStatus reproduce(const ReproduceOptions& options, Context& context);
 ExitStatus completion(const CompletionOptions& options, Context& context);
 
 }  // namespace hwsim::cli

@@ -105,8 +105,18 @@ constexpr ErrorCode kCodes[] = {
     {"M001", "mapping of the published tables",
      "A line of configs/published/mapping/*.csv matches no row, or names something that does not exist."},
     {"M002", "published row without a run",
-     "Every time and count of configs/published needs lines in mapping/ that name its scene, technique, GPU and "
+     "Every time and count of configs/published needs lines in mapping/ that name its scene, technique, GPU "
+     "and "
      "passes, or a reason in uses.csv why it is left out."},
+
+    {"M003", "parameter of the fit",
+     "configs/calibration/parameters.csv declares scope, name, start, range and prior of each number that "
+     "the "
+     "fit may move. \"file\" takes start or range from the GPU's own file."},
+    {"M004", "too many parameters of a GPU",
+     "The derivatives of one GPU are computed side by side, 16 at a time."},
+    {"M005", "too many parameters", "The fit takes at most one parameter for four fitted values."},
+    {"M006", "damaged calibration", "calibration.json must be as `hwsim fit` wrote it."},
 
     {"I001", "image module not found",
      "Images are read and written by libhwsim_image_io.so, which lies beside the program's libraries and "

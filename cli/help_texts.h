@@ -115,6 +115,29 @@ inline constexpr std::string_view kHelpCachePrune = R"(Examples:
 
 Removes old files from the cache; they are made anew when they are needed.)";
 
+inline constexpr std::string_view kHelpFit = R"(Examples:
+  hwsim fit --dry-run
+  hwsim fit --dry-run --paper axaa
+
+Fits the uncertain numbers of the GPUs to the published times, and writes calibrated GPU files
+that `run` uses from then on: hwsim fit --out configs/calibrated --force. Says which numbers the
+data do not determine, and which rows were not run.)";
+
+inline constexpr std::string_view kHelpValidate = R"(Examples:
+  hwsim validate --dry-run
+  hwsim validate --dry-run --paper sbaa --json
+
+Fits anew with scenes, techniques, rates and GPUs left out, and reports the errors on what was
+left out, beside what simple rules would predict. Exit status 4 when a stated accuracy no longer
+holds.)";
+
+inline constexpr std::string_view kHelpReproduce = R"(Examples:
+  hwsim reproduce sbaa --dry-run
+  hwsim reproduce wire_aa
+  hwsim reproduce axaa --dry-run --format csv
+
+A paper's tables, row by row: published beside predicted, with intervals; --out adds pictures.)";
+
 inline constexpr std::string_view kHelpCompletion = R"(Examples:
   hwsim completion bash
   hwsim completion zsh

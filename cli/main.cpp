@@ -34,6 +34,9 @@ ExitStatus dispatch(const Command& command, Context& context) {
                                [&](const DoctorOptions& o) { return doctor(o, context); },
                                [&](const HelpOptions& o) { return help(o, context); },
                                [&](const CacheOptions& o) { return cache(o, context); },
+                               [&](const FitOptions& o) { return fit(o, context); },
+                               [&](const ValidateOptions& o) { return validate(o, context); },
+                               [&](const ReproduceOptions& o) { return reproduce(o, context); },
                                [&](const CompletionOptions& o) { return completion(o, context); }},
                     command);
 }

@@ -105,6 +105,23 @@ struct CacheOptions {
   bool dry_run = false;
 };
 
+/// `fit` and `validate`.
+struct FitOptions {
+  CommonOptions common;
+  OutOptions out;                   ///< fit: the folder of calibrated GPUs
+  std::vector<std::string> papers;  ///< empty: all
+  int starts = 10;
+  bool dry_run = false;
+};
+struct ValidateOptions : FitOptions {};
+
+struct ReproduceOptions {
+  CommonOptions common;
+  std::string paper;
+  std::string out;  ///< folder for the pictures; empty: none
+  bool dry_run = false;
+};
+
 struct CompletionOptions {
   CommonOptions common;
   std::string shell;
@@ -115,8 +132,8 @@ struct PrintText {
   std::string text;
 };
 
-using Command =
-    std::variant<PrintText, RunOptions, ReferenceOptions, ListOptions, ShowOptions, SceneCheckOptions,
-                 ConfigOptions, DoctorOptions, HelpOptions, CacheOptions, CompletionOptions>;
+using Command = std::variant<PrintText, RunOptions, ReferenceOptions, ListOptions, ShowOptions,
+                             SceneCheckOptions, ConfigOptions, DoctorOptions, HelpOptions, CacheOptions,
+                             FitOptions, ValidateOptions, ReproduceOptions, CompletionOptions>;
 
 }  // namespace hwsim::cli

@@ -1,0 +1,29 @@
+#include "cli/calibration_files.h"
+
+#include <filesystem>
+
+#include "cli/files.h"
+
+namespace hwsim::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path calibrated_directory() { return fs::path(config_directory()) / "calibrated"; }
+
+}  // namespace
+
+std::optional<cost_models::Calibration> load_calibration() {
+  const fs::path path = calibrated_directory() / "calibration.json";
+  std::error_code error;
+  if (!fs::exists(path, error)) return std::nullopt;
+  return cost_models::calibration_from_json(read_file(path.string()), path.string());
+}
+
+std::string gpu_file(const std::string& name) {
+  const fs::path path = calibrated_directory() / (name + ".toml");
+  std::error_code error;
+  return fs::exists(path, error) ? path.string() : name;
+}
+
+}  // namespace hwsim::cli

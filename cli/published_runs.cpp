@@ -1,0 +1,145 @@
+#include "cli/published_runs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "cli/files.h"
+#include "cli/messages.h"
+#include "cli/progress.h"
+#include "cli/simulate.h"
+
+namespace hwsim::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using cost_models::Experiment;
+using cost_models::RowUse;
+using cost_models::RunSpec;
+
+std::string published_directory() { return (fs::path(config_directory()) / "published").string(); }
+
+/// Traces of runs, emulated as `run` would.
+class RunTraces {
+ public:
+  explicit RunTraces(const CommonOptions& options) : options_(options) {}
+
+  std::shared_ptr<const WorkTrace> trace(const RunSpec& spec, const GpuConfig& gpu) {
+    RunPlan plan;
+    plan.view.scene = spec.scene;
+    plan.view.camera = spec.camera;
+    plan.view.resolution = {spec.width_px, spec.height_px};
+    plan.view.point_lights = spec.point_lights;
+    plan.view.shadows = spec.shadows;
+    plan.skip = {true, true};
+    const algos::TechniqueChoice technique = algos::parse_technique(spec.technique);
+    const std::string key = fmt::format("{}|{}|{}x{}|{}|{}|{}|{}", spec.scene, spec.camera, spec.width_px,
+                                        spec.height_px, spec.point_lights, spec.shadows,
+                                        algos::technique_text(technique, true), functional_hash(gpu));
+    std::shared_ptr<const WorkTrace>& known = traces_[key];
+    if (known) return known;
+    if (scene_key_ != spec.scene + "|" + spec.camera) {
+      loaded_ = load_view(plan.view);
+      scene_key_ = spec.scene + "|" + spec.camera;
+    }
+    Simulator simulator(plan, loaded_, nullptr, options_.jobs);
+    const PointResult point = simulator.run(technique, gpu, [](double, const std::string&) {});
+    known = std::make_shared<const WorkTrace>(point.emulation->trace);  // without the image
+    return known;
+  }
+
+ private:
+  CommonOptions options_;
+  std::map<std::string, std::shared_ptr<const WorkTrace>> traces_;
+  LoadedScene loaded_;
+  std::string scene_key_;
+};
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text == "wireaa" ? "wire_aa" : text;
+}
+
+/// Why a run is impossible whatever the scene; empty when nothing is known against it.
+std::string technique_problem(const RunSpec& run) {
+  try {
+    algos::parse_technique(run.technique);
+    return {};
+  } catch (const InputError& error) {
+    return cost_models::reason_of(error);
+  }
+}
+
+}  // namespace
+
+bool in_papers(const cost_models::Cell& cell, const std::vector<std::string>& papers) {
+  return papers.empty() || std::find(papers.begin(), papers.end(), lower(cell.row.document)) != papers.end();
+}
+
+void check_papers(const std::vector<std::string>& papers) {
+  const std::vector<std::string> known = {"sss", "sbaa", "axaa", "agaa", "wire_aa"};
+  for (const std::string& paper : papers)
+    if (std::find(known.begin(), known.end(), paper) == known.end())
+      fail_usage("U003", "no paper is called `" + paper + "`, only sss, sbaa, axaa, agaa and wire_aa",
+                 did_you_mean(paper, known));
+}
+
+std::vector<cost_models::Cell> published_cells(const std::vector<std::string>& papers) {
+  check_papers(papers);
+  std::vector<cost_models::Cell> cells =
+      cost_models::map_rows(cost_models::load_published(published_directory()), published_directory());
+  std::erase_if(cells, [&](const cost_models::Cell& cell) { return !in_papers(cell, papers); });
+  return cells;
+}
+
+Experiment load_experiment(std::vector<cost_models::Cell> cells, const CommonOptions& options,
+                           Context& context) {
+  std::map<std::string, GpuConfig> gpus;
+  for (const cost_models::Cell& cell : published_cells({}))  // parameters name GPUs of every paper
+    if (cell.has_run && !gpus.contains(cell.run.gpu))
+      gpus.emplace(cell.run.gpu, load_gpu(cell.run.gpu, {}, {}, gpu_directory()));
+  Progress progress(options, context.terminal);
+  RunTraces traces(options);
+  Experiment experiment = cost_models::make_experiment(
+      std::move(cells), gpus, (fs::path(config_directory()) / "calibration" / "parameters.csv").string(),
+      [&](const RunSpec& spec, const GpuConfig& gpu) { return traces.trace(spec, gpu); },
+      [&](std::size_t done, std::size_t all, const std::string& what) {
+        progress.update(all == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(all), what);
+      });
+  progress.finish();
+  return experiment;
+}
+
+Table plan_table(const std::vector<cost_models::Cell>& cells) {
+  Table table{{{"row", "row"},
+               {"use", "use"},
+               {"published", "published", true},
+               {"unit", "unit"},
+               {"run", "run", false, 60},
+               {"passes", "passes"},
+               {"reason", "reason", false, 40}},
+              {}};
+  for (const cost_models::Cell& cell : cells) {
+    if (cell.use == RowUse::claim) continue;
+    const std::string missing = cell.has_run ? technique_problem(cell.run) : std::string();
+    table.rows.push_back({cell.row.id(), std::string(row_use_name(cell.use)), Real{cell.published, 3},
+                          cell.unit, cell.has_run ? cell.run.to_string() : std::string(), cell.passes,
+                          missing.empty() ? cell.reason : "not run: " + missing});
+  }
+  return table;
+}
+
+Table not_run_table(const Experiment& experiment) {
+  std::map<std::string, std::uint64_t> rows;
+  for (const cost_models::NotRun& n : experiment.not_run)
+    if (const RowUse use = experiment.cells[n.cell].use; use == RowUse::fitted || use == RowUse::count)
+      ++rows[n.reason];
+  Table table{{{"rows", "rows", true}, {"not_run_because", "not run because"}}, {}};
+  for (const auto& [reason, count] : rows) table.rows.push_back({count, reason});
+  return table;
+}
+
+}  // namespace hwsim::cli

@@ -1,0 +1,223 @@
+#include "cost_models/calibration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cost_models/covariance.h"
+#include "cost_models/predictor.h"
+#include "hwsim/config/gpu_keys.h"
+
+namespace hwsim::cost_models {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string technique_id(const std::string& text) { return text.substr(0, text.find(':')); }
+
+Json parameter_json(const CalibratedParameter& p) {
+  return {{"scope", scope_name(p.scope)},
+          {"member", p.member},
+          {"name", p.name},
+          {"unit", p.unit},
+          {"value", p.value},
+          {"interval90", {p.low90, p.high90}},
+          {"start", p.start},
+          {"range", {p.low, p.high}},
+          {"used", p.used},
+          {"at_bound", p.at_bound},
+          {"identified", p.identified}};
+}
+
+CalibratedParameter parameter_from(const Json& json) {
+  CalibratedParameter p;
+  const std::string scope = json.at("scope");
+  for (const Scope s : {Scope::gpu, Scope::all, Scope::scene})
+    if (scope_name(s) == scope) p.scope = s;
+  p.member = json.at("member");
+  p.name = json.at("name");
+  p.unit = json.at("unit");
+  p.value = json.at("value");
+  p.low90 = json.at("interval90").at(0);
+  p.high90 = json.at("interval90").at(1);
+  p.start = json.at("start");
+  p.low = json.at("range").at(0);
+  p.high = json.at("range").at(1);
+  p.used = json.at("used");
+  p.at_bound = json.at("at_bound");
+  p.identified = json.at("identified");
+  return p;
+}
+
+[[noreturn]] void damaged(const std::string& path, const std::string& why) {
+  Diagnostic problem{.code = "M006", .message = "`" + path + "` is no calibration: " + why};
+  problem.place.file = path;
+  problem.help = "`hwsim fit --out " + path.substr(0, path.rfind('/')) + " --force` writes it anew";
+  throw InputError(problem);
+}
+
+/// Fitted values of one GPU: those of scope all, then its own.
+std::vector<const CalibratedParameter*> parameters_of(const Calibration& calibration,
+                                                      const std::string& gpu) {
+  std::vector<const CalibratedParameter*> found;
+  for (const Scope scope : {Scope::all, Scope::gpu})
+    for (const CalibratedParameter& p : calibration.parameters)
+      if (p.scope == scope && p.used && (scope == Scope::all || p.member == gpu)) found.push_back(&p);
+  return found;
+}
+
+double quantile_of(const Calibration& calibration, std::initializer_list<Split> splits) {
+  double widest = 0.0;
+  for (const Split split : splits)
+    if (const auto found = calibration.quantile90.find(std::string(split_name(split)));
+        found != calibration.quantile90.end())
+      widest = std::max(widest, found->second);
+  return widest;
+}
+
+}  // namespace
+
+Calibration make_calibration(const Experiment& experiment, const Validation& validation) {
+  Calibration c;
+  const Fit& fit = validation.fit;
+  for (std::size_t i = 0; i < experiment.parameters.size(); ++i) {
+    const Parameter& p = experiment.parameters[i];
+    const Estimate& e = fit.estimates[i];
+    c.parameters.push_back({p.scope, p.member, p.name, p.unit, p.start, p.low, p.high, e.value, e.low90,
+                            e.high90, e.used, e.at_bound, e.identified});
+  }
+  c.covariance = fit.covariance;
+  c.residual_log_sd = fit.residual_log_sd;
+  for (const SplitResult& split : validation.splits) {
+    c.quantile90[std::string(split_name(split.split))] = split.quantile90;
+    if (split.split != Split::leave_scene_out) continue;
+    for (const HeldOut& held : split.cells)
+      c.held_out_ms[experiment.cells[held.cell].row.id()] = held.predicted_ms;
+  }
+  const std::vector<bool> fitted = fitted_cells(experiment);
+  for (std::size_t i = 0; i < fitted.size(); ++i)
+    if (fitted[i])
+      c.techniques[experiment.cells[i].run.gpu].insert(technique_id(experiment.cells[i].run.technique));
+  for (const GpuConfig& gpu : experiment.gpus)
+    if (c.techniques.contains(gpu.id)) c.gpu_hashes[gpu.id] = content_hash(calibrated_gpu(gpu, c));
+  return c;
+}
+
+GpuConfig calibrated_gpu(const GpuConfig& documented, const Calibration& calibration) {
+  GpuConfig gpu = documented;
+  const std::vector<Key> keys = keys_of(static_cast<GpuValues<double>&>(gpu));
+  for (const CalibratedParameter* p : parameters_of(calibration, gpu.id)) {
+    const auto key =
+        std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.info.name == p->name; });
+    if (key == keys.end()) continue;
+    *std::get<double*>(key->slot) = p->value;
+    Origin& origin = gpu.origins[p->name];
+    origin = Origin{};
+    origin.layer = Origin::Layer::file;
+    origin.provenance = Provenance::fitted;
+    origin.source = p->scope == Scope::all ? "hwsim fit, all GPUs" : "hwsim fit";
+    if (p->at_bound) origin.source += ", at the end of its range";
+    if (!p->identified) origin.source += ", not identified by the data";
+    origin.interval = {std::min(p->low90, p->value), std::max(p->high90, p->value)};
+  }
+  return gpu;
+}
+
+std::string to_json(const Calibration& c) {
+  Json json = {{"schema_version", c.version}, {"residual_log_sd", c.residual_log_sd}};
+  json["quantile90"] = c.quantile90;
+  json["techniques"] = c.techniques;
+  json["gpu_hashes"] = c.gpu_hashes;
+  json["parameters"] = Json::array();
+  for (const CalibratedParameter& p : c.parameters) json["parameters"].push_back(parameter_json(p));
+  const std::size_t n = c.parameters.size();
+  json["covariance"] = Json::array();
+  for (std::size_t i = 0; i < n; ++i)
+    json["covariance"].push_back(
+        std::vector<double>(c.covariance.begin() + static_cast<std::ptrdiff_t>(i * n),
+                            c.covariance.begin() + static_cast<std::ptrdiff_t>((i + 1) * n)));
+  json["held_out_ms"] = c.held_out_ms;
+  return json.dump(1) + "\n";
+}
+
+Calibration calibration_from_json(const std::string& text, const std::string& path) try {
+  const Json json = Json::parse(text);
+  Calibration c;
+  c.version = json.at("schema_version");
+  c.residual_log_sd = json.at("residual_log_sd");
+  c.quantile90 = json.at("quantile90").get<std::map<std::string, double>>();
+  c.techniques = json.at("techniques").get<std::map<std::string, std::set<std::string>>>();
+  c.gpu_hashes = json.at("gpu_hashes").get<std::map<std::string, std::string>>();
+  c.held_out_ms = json.at("held_out_ms").get<std::map<std::string, double>>();
+  for (const Json& p : json.at("parameters")) c.parameters.push_back(parameter_from(p));
+  for (const Json& row : json.at("covariance"))
+    for (const Json& value : row) c.covariance.push_back(value);
+  if (c.covariance.size() != c.parameters.size() * c.parameters.size())
+    damaged(path, "its covariance has another size than its parameters");
+  return c;
+} catch (const nlohmann::json::exception& error) {
+  damaged(path, error.what());
+}
+
+std::optional<Fit> fit_of(const Calibration& calibration, const std::vector<Parameter>& parameters) {
+  const bool same =
+      std::equal(parameters.begin(), parameters.end(), calibration.parameters.begin(),
+                 calibration.parameters.end(), [](const Parameter& a, const CalibratedParameter& b) {
+                   return a.scope == b.scope && a.member == b.member && a.name == b.name;
+                 });
+  if (!same) return std::nullopt;
+  Fit fit;
+  for (const CalibratedParameter& p : calibration.parameters) {
+    fit.log_values.push_back(std::log(p.value));
+    fit.estimates.push_back({p.value, p.low90, p.high90, p.used, p.at_bound, p.identified});
+  }
+  fit.covariance = calibration.covariance;
+  fit.residual_log_sd = calibration.residual_log_sd;
+  return fit;
+}
+
+FrameInterval frame_interval(const Calibration& calibration, const WorkTrace& trace, const GpuConfig& gpu,
+                             const std::string& technique, Engine engine) {
+  const auto hash = calibration.gpu_hashes.find(gpu.id);
+  if (hash == calibration.gpu_hashes.end() || engine != Engine::queue) return {};
+  FrameInterval result;
+  const auto fitted = [&](const std::string& id) {
+    const auto found = calibration.techniques.find(id);
+    return found != calibration.techniques.end() && found->second.contains(technique_id(technique));
+  };
+  const bool elsewhere = std::any_of(calibration.techniques.begin(), calibration.techniques.end(),
+                                     [&](const auto& entry) { return fitted(entry.first); });
+  if (content_hash(gpu) != hash->second || !elsewhere)
+    result.support = Support::extrapolated;
+  else
+    result.support = fitted(gpu.id) ? Support::calibrated : Support::interpolated;
+
+  const std::size_t n = calibration.parameters.size();
+  std::vector<std::string> keys;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < n; ++i) {
+    const CalibratedParameter& p = calibration.parameters[i];
+    if (p.scope == Scope::scene || (p.scope == Scope::gpu && p.member != gpu.id)) continue;
+    keys.push_back(p.name);
+    places.push_back(i);
+  }
+  const Prediction frame = predict_frame(trace, gpu, keys);
+  std::vector<double> gradient(n, 0.0);
+  for (std::size_t k = 0; k < keys.size(); ++k) gradient[places[k]] = frame.gradient[k];
+  const double sd = std::sqrt(log_variance(calibration.covariance, gradient) +
+                              calibration.residual_log_sd * calibration.residual_log_sd);
+  // No frame of a user is a published one: the narrowest interval is that of a scene that the fit did not
+  // see.
+  double quantile = quantile_of(calibration, {Split::in_sample, Split::leave_scene_out});
+  if (result.support == Support::interpolated)
+    quantile = std::max(quantile, quantile_of(calibration, {Split::leave_gpu_out}));
+  if (result.support == Support::extrapolated)
+    quantile = std::max(
+        quantile, quantile_of(calibration,
+                              {Split::leave_technique_out, Split::rate_extrapolation, Split::leave_gpu_out}));
+  const double ns = frame.ms * 1e6;
+  result.interval_ns = {ns * std::exp(-quantile * sd), ns * std::exp(quantile * sd)};
+  return result;
+}
+
+}  // namespace hwsim::cost_models

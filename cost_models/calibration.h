@@ -1,0 +1,57 @@
+#pragma once
+// What a fit leaves behind: configs/calibrated/GPU.toml, complete GPU files with fitted values, and
+// calibration.json beside them, from which `run` takes intervals and `reproduce` predictions.
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cost_models/validation.h"
+#include "hwsim/timing/timing.h"
+
+namespace hwsim::cost_models {
+
+struct CalibratedParameter {
+  Scope scope = Scope::gpu;
+  std::string member, name, unit;
+  double start = 0.0, low = 0.0, high = 0.0;  ///< declared
+  double value = 0.0, low90 = 0.0, high90 = 0.0;
+  bool used = false, at_bound = false, identified = true;
+};
+
+struct Calibration {
+  int version = 1;
+  std::vector<CalibratedParameter> parameters;
+  std::vector<double> covariance;  ///< of the logarithms, row by row
+  double residual_log_sd = 0.0;
+  std::map<std::string, double> quantile90;                 ///< by split
+  std::map<std::string, std::set<std::string>> techniques;  ///< by GPU: those with fitted rows
+  std::map<std::string, double> held_out_ms;                ///< by row: by the fit that did not see its scene
+  std::map<std::string, std::string> gpu_hashes;            ///< content of each calibrated GPU file
+};
+
+Calibration make_calibration(const Experiment& experiment, const Validation& validation);
+
+/// The GPU with its fitted values; each says that it is fitted, and its interval.
+GpuConfig calibrated_gpu(const GpuConfig& documented, const Calibration& calibration);
+
+std::string to_json(const Calibration& calibration);
+/// Throws InputError M006 for a damaged file.
+Calibration calibration_from_json(const std::string& text, const std::string& path);
+
+/// The fit that a calibration holds, for the same parameters; none when they were declared differently.
+std::optional<Fit> fit_of(const Calibration& calibration, const std::vector<Parameter>& parameters);
+
+struct FrameInterval {
+  Support support = Support::uncalibrated;
+  std::optional<std::array<double, 2>> interval_ns;
+};
+
+/// 90 % interval of a frame. calibrated: technique and GPU as fitted; interpolated: the technique was fitted
+/// on another GPU; extrapolated: a technique without published times, or changed numbers of the GPU.
+FrameInterval frame_interval(const Calibration& calibration, const WorkTrace& trace, const GpuConfig& gpu,
+                             const std::string& technique, Engine engine);
+
+}  // namespace hwsim::cost_models

@@ -1,0 +1,107 @@
+#include "cost_models/covariance.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "cost_models/predictor.h"
+
+namespace hwsim::cost_models {
+namespace {
+
+constexpr double kStrongCorrelation = 0.9;
+constexpr double kBoundDistance = 1e-6;  // of the range, in ln(value)
+constexpr double kNullSpace = 1e-10;     // of the largest eigenvalue
+
+std::vector<std::size_t> free_parameters(const Experiment& experiment, const std::vector<bool>& used,
+                                         const std::vector<double>& log_values) {
+  std::vector<std::size_t> free;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const Parameter& p = experiment.parameters[i];
+    const double margin = kBoundDistance * std::log(p.high / p.low);
+    if (used[i] && log_values[i] > std::log(p.low) + margin && log_values[i] < std::log(p.high) - margin)
+      free.push_back(i);
+  }
+  return free;
+}
+
+/// The rows of the weighted Jacobian, without the noise, and the weighted sum of squares.
+struct Linearization {
+  Eigen::MatrixXd rows;
+  double squares = 0.0, weights = 0.0;
+};
+
+Linearization linearize(const Experiment& experiment, const std::vector<bool>& use,
+                        const std::vector<std::size_t>& free, const FitOptions& options, const Fit& fit) {
+  Predictor predictor(experiment, options.jobs);
+  predictor.evaluate(fit.log_values, true);
+  Linearization result;
+  result.rows.resize(static_cast<Eigen::Index>(fit.fitted_values), static_cast<Eigen::Index>(free.size()));
+  Eigen::Index row = 0;
+  for (std::size_t cell = 0; cell < use.size(); ++cell) {
+    if (!use[cell]) continue;
+    const double r = std::log(predictor[cell].ms / experiment.cells[cell].published);
+    const double weight = 1.0 / (1.0 + (r / options.robust_log) * (r / options.robust_log));
+    for (std::size_t k = 0; k < free.size(); ++k)
+      result.rows(row, static_cast<Eigen::Index>(k)) = std::sqrt(weight) * predictor[cell].gradient[free[k]];
+    result.squares += weight * r * r;
+    result.weights += weight;
+    ++row;
+  }
+  return result;
+}
+
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& information) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
+  Eigen::VectorXd values = solver.eigenvalues();
+  const double least = kNullSpace * std::max(values.maxCoeff(), 1e-300);
+  for (double& value : values) value = 1.0 / std::max(value, least);
+  return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+double condition_of(const Eigen::MatrixXd& information) {
+  const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd unit = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(unit).eigenvalues();
+  return std::sqrt(values.maxCoeff() / std::max(values.minCoeff(), 1e-300));
+}
+
+}  // namespace
+
+void add_covariance(const Experiment& experiment, const std::vector<bool>& use, const std::vector<bool>& used,
+                    const FitOptions& options, Fit& fit) {
+  const std::size_t n = experiment.parameters.size();
+  fit.covariance.assign(n * n, 0.0);
+  const std::vector<std::size_t> free = free_parameters(experiment, used, fit.log_values);
+  const Linearization linear = linearize(experiment, use, free, options, fit);
+  const double freedom = std::max(1.0, linear.weights - static_cast<double>(free.size()));
+  fit.residual_log_sd = std::sqrt(std::max(linear.squares / freedom, 1e-12));
+  if (free.empty()) return;
+  Eigen::MatrixXd information =
+      linear.rows.transpose() * linear.rows / (fit.residual_log_sd * fit.residual_log_sd);
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const double sd = experiment.parameters[free[k]].prior_log_sd;
+    if (sd > 0.0) information(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) += 1.0 / (sd * sd);
+  }
+  fit.condition = condition_of(information);
+  const Eigen::MatrixXd covariance = inverse(information);
+  for (std::size_t a = 0; a < free.size(); ++a)
+    for (std::size_t b = 0; b < free.size(); ++b) {
+      const auto i = static_cast<Eigen::Index>(a), j = static_cast<Eigen::Index>(b);
+      fit.covariance[free[a] * n + free[b]] = covariance(i, j);
+      const double correlation = covariance(i, j) / std::sqrt(covariance(i, i) * covariance(j, j));
+      if (a < b && std::abs(correlation) > kStrongCorrelation)
+        fit.correlations.push_back({free[a], free[b], correlation});
+    }
+}
+
+double log_variance(const std::vector<double>& covariance, const std::vector<double>& gradient) {
+  const std::size_t n = gradient.size();
+  double sum = 0.0;
+  for (std::size_t a = 0; a < n; ++a) {
+    if (gradient[a] == 0.0) continue;
+    for (std::size_t b = 0; b < n; ++b) sum += gradient[a] * covariance[a * n + b] * gradient[b];
+  }
+  return std::max(0.0, sum);
+}
+
+}  // namespace hwsim::cost_models

@@ -1,0 +1,134 @@
+#include "cost_models/parameters.h"
+
+#include <charconv>
+#include <cmath>
+#include <set>
+
+#include "hwsim/base/csv.h"
+#include "hwsim/base/diagnostics.h"
+#include "hwsim/config/gpu_keys.h"
+
+namespace hwsim::cost_models {
+namespace {
+
+std::string unit_of(std::string_view name) {
+  for (const auto& [ending, unit] :
+       {std::pair{"_mhz", "MHz"}, std::pair{"_us", "us"}, std::pair{"_kib", "KiB"},
+        std::pair{"_gb_s", "GB/s"}, std::pair{"_ratio", "ratio"}, std::pair{"_per_clk", "per clock"},
+        std::pair{"_clk", "per clock"}, std::pair{"_cycles", "cycles"}, std::pair{"_slots", "slots"}})
+    if (name.ends_with(ending)) return unit;
+  return "ratio";
+}
+
+class Reader {
+ public:
+  Reader(const std::string& path, const std::map<std::string, GpuConfig>& gpus)
+      : file_(read_csv(path)), gpus_(gpus) {}
+
+  std::vector<Parameter> run() {
+    std::vector<Parameter> parameters;
+    std::set<std::string> ids;
+    for (row_ = 0; row_ < file_.rows.size(); ++row_) {
+      const Parameter parameter = read();
+      if (!ids.insert(parameter.id()).second) problem("`" + parameter.id() + "` is declared twice");
+      parameters.push_back(parameter);
+    }
+    if (!problems_.empty()) throw InputError(problems_);
+    return parameters;
+  }
+
+ private:
+  const std::string& text(std::string_view column) const { return file_.rows[row_][file_.column(column)]; }
+
+  void problem(const std::string& message) {
+    Diagnostic diagnostic{.code = "M003", .message = message};
+    diagnostic.place.file = file_.path;
+    diagnostic.place.line = file_.lines[row_];
+    diagnostic.place.column = 1;
+    problems_.push_back(diagnostic);
+  }
+
+  double number(std::string_view column, double from_file) {
+    const std::string& t = text(column);
+    if (t == "file") return from_file;
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(t.data(), t.data() + t.size(), value);
+    if (error != std::errc() || end != t.data() + t.size() || !std::isfinite(value))
+      problem("`" + t + "` is no number for " + std::string(column));
+    return value;
+  }
+
+  Parameter read() {
+    Parameter p;
+    const std::string& scope = text("scope");
+    p.scope = scope == "gpu" ? Scope::gpu : scope == "all" ? Scope::all : Scope::scene;
+    if (scope_name(p.scope) != scope) problem("`" + scope + "` is no scope: gpu, all or scene");
+    p.member = p.scope == Scope::all ? "all" : text("member");
+    p.name = text("name");
+    p.unit = unit_of(p.name);
+    p.meaning = text("meaning");
+    const auto [value, interval] = from_file(p);
+    p.start = number("start", value);
+    p.low = number("low", interval[0]);
+    p.high = number("high", interval[1]);
+    const double factor = number("prior_factor", 0.0);
+    p.prior_log_sd = factor > 1.0 ? std::log(factor) : 0.0;
+    if (!(p.low > 0.0 && p.low <= p.start && p.start <= p.high && p.low < p.high))
+      problem("`" + p.id() + "`: " + std::to_string(p.low) + " < " + std::to_string(p.start) + " < " +
+              std::to_string(p.high) + " does not hold, or the GPU's file has no interval for it");
+    return p;
+  }
+
+  /// Value and interval of a GPU's file; of the key's first GPU for all.
+  std::pair<double, std::array<double, 2>> from_file(const Parameter& p) {
+    if (p.scope == Scope::scene) {
+      if (p.name != kGeometryLoad && p.name != kLightReach) problem("scenes have no factor `" + p.name + "`");
+      return {1.0, {0.0, 0.0}};
+    }
+    const auto gpu = p.scope == Scope::all ? gpus_.begin() : gpus_.find(p.member);
+    if (gpu == gpus_.end()) {
+      problem("no published row names the GPU `" + p.member + "`");
+      return {0.0, {0.0, 0.0}};
+    }
+    GpuConfig copy = gpu->second;
+    for (const Key& key : keys_of(static_cast<GpuValues<double>&>(copy))) {
+      if (key.info.name != p.name || !std::holds_alternative<double*>(key.slot)) continue;
+      const auto origin = copy.origins.find(p.name);
+      const bool known = origin != copy.origins.end() && origin->second.interval;
+      return {*std::get<double*>(key.slot),
+              known ? *origin->second.interval : std::array<double, 2>{0.0, 0.0}};
+    }
+    problem("GPU files have no real number `" + p.name + "`");
+    return {0.0, {0.0, 0.0}};
+  }
+
+  CsvFile file_;
+  const std::map<std::string, GpuConfig>& gpus_;
+  std::size_t row_ = 0;
+  std::vector<Diagnostic> problems_;
+};
+
+}  // namespace
+
+std::string_view scope_name(Scope scope) {
+  switch (scope) {
+    case Scope::gpu:
+      return "gpu";
+    case Scope::all:
+      return "all";
+    case Scope::scene:
+      return "scene";
+  }
+  return "gpu";
+}
+
+bool Parameter::concerns(const std::string& gpu, const std::string& scene) const {
+  return scope == Scope::all || member == (scope == Scope::gpu ? gpu : scene);
+}
+
+std::vector<Parameter> load_parameters(const std::string& path,
+                                       const std::map<std::string, GpuConfig>& gpus) {
+  return Reader(path, gpus).run();
+}
+
+}  // namespace hwsim::cost_models

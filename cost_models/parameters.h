@@ -1,0 +1,38 @@
+#pragma once
+// What the fit may move: physical numbers, each with a range, a start and a scope, declared in
+// configs/calibration/parameters.csv. None belongs to a cell, a technique or a row.
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hwsim/config/gpu_config.h"
+
+namespace hwsim::cost_models {
+
+/// gpu: a key of one GPU's file. all: the same key of every GPU. scene: a factor between the original scene
+/// of a paper and its stand-in.
+enum class Scope { gpu, all, scene };
+std::string_view scope_name(Scope scope);
+
+/// The two factors that a scene may have.
+inline constexpr std::string_view kGeometryLoad = "geometry_load";  ///< work of draws, original over stand-in
+inline constexpr std::string_view kLightReach =
+    "light_reach";  ///< share of the point lights' work that is done
+
+struct Parameter {
+  Scope scope = Scope::gpu;
+  std::string member;  ///< GPU or scene; "all" for scope all
+  std::string name;    ///< key of a GPU file, or a factor of a scene
+  double start = 0.0, low = 0.0, high = 0.0;
+  double prior_log_sd = 0.0;  ///< of ln(value / start); 0: no prior
+  std::string unit, meaning;
+  std::string id() const { return member + "." + name; }
+  bool concerns(const std::string& gpu, const std::string& scene) const;
+};
+
+/// Reads the declarations. "file" for start or range stands for what the GPU's file says (value, interval).
+/// Throws InputError M003 with every mistake.
+std::vector<Parameter> load_parameters(const std::string& path, const std::map<std::string, GpuConfig>& gpus);
+
+}  // namespace hwsim::cost_models

@@ -1,0 +1,67 @@
+#pragma once
+// Errors on data that the fit did not see, beside what simple rules would predict.
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cost_models/fit.h"
+
+namespace hwsim::cost_models {
+
+/// How the cells are divided: each fold is predicted by a fit to the others.
+enum class Split { in_sample, leave_scene_out, leave_technique_out, rate_extrapolation, leave_gpu_out };
+inline constexpr int kSplitCount = 5;
+std::string_view split_name(Split split);
+
+/// A cell predicted by a fit that did (in_sample) or did not see it.
+struct HeldOut {
+  std::size_t cell = 0;
+  std::string fold;  ///< what was left out: "dragon"; empty in sample
+  double predicted_ms = 0.0;
+  double log_sd = 0.0;                 ///< of ln(time), from parameters and residuals
+  double low_ms = 0.0, high_ms = 0.0;  ///< 90 % interval
+};
+
+struct Worst {
+  std::size_t cell = 0;
+  double ape_pct = 0.0;
+};
+
+struct Figures {
+  std::size_t cells = 0;
+  double mape_pct = 0.0, median_ape_pct = 0.0;
+  std::optional<Worst> worst;
+  double kendall = 1.0;
+  double coverage90_pct = 0.0;
+};
+
+struct SplitResult {
+  Split split = Split::in_sample;
+  std::vector<HeldOut> cells;
+  double quantile90 = 0.0;  ///< of |ln(predicted / published)| / log_sd: the width of intervals of this kind
+  Figures figures;
+  std::map<std::string, Figures> baselines;  ///< mean, bytes_over_bandwidth, linear_regression
+};
+
+struct Validation {
+  Fit fit;  ///< to all cells
+  std::vector<SplitResult> splits;
+  std::map<std::string, Figures> papers, gpus;  ///< in sample
+  double shaded_samples_mape_pct = 0.0, memory_worst_pct = 0.0;
+  std::size_t shaded_samples_cells = 0, memory_cells = 0;
+};
+
+/// Fits to all, then to each complement of a fold, from the optimum of all.
+Validation validate(const Experiment& experiment, const FitOptions& options, const StepProgress& progress);
+
+/// Predictions of every cell that a replay predicts, derived rows included, by one fit; intervals with the
+/// given quantile.
+std::vector<HeldOut> predict_cells(const Experiment& experiment, const Fit& fit, double quantile90, int jobs);
+
+Figures figures_of(const Experiment& experiment, const std::vector<HeldOut>& cells);
+
+/// What a cell's run counts itself: shaded samples of its passes, or allocated MiB.
+double counted(const Experiment& experiment, const Replay& replay, std::size_t cell);
+
+}  // namespace hwsim::cost_models
