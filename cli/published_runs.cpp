@@ -33,7 +33,6 @@ class RunTraces {
     plan.view.resolution = {spec.width_px, spec.height_px};
     plan.view.point_lights = spec.point_lights;
     plan.view.shadows = spec.shadows;
-    plan.skip = {true, true};
     const algos::TechniqueChoice technique = algos::parse_technique(spec.technique);
     const std::string key = fmt::format("{}|{}|{}x{}|{}|{}|{}|{}", spec.scene, spec.camera, spec.width_px,
                                         spec.height_px, spec.point_lights, spec.shadows,
