@@ -108,6 +108,7 @@ class GlbEncoder {
       if (look.texture >= 0) pbr["baseColorTexture"] = {{"index", look.texture}};
       json material = {{"name", look.name}, {"pbrMetallicRoughness", pbr}};
       if (look.double_sided) material["doubleSided"] = true;
+      if (look.alpha_test) material["alphaMode"] = "MASK";
       if (look.unlit) material["extensions"] = {{"KHR_materials_unlit", json::object()}};
       root_["materials"].push_back(std::move(material));
     }
@@ -145,21 +146,26 @@ class GlbEncoder {
     root_["meshes"].push_back({{"name", model.name}, {"primitives", primitives}});
   }
 
+  void add_camera(json& nodes, const View& view) {
+    nodes.push_back({{"name", view.name},
+                     {"camera", root_["cameras"].size()},
+                     {"translation", array_of(view.eye)},
+                     {"rotation", look_rotation(view.target - view.eye)}});
+    root_["cameras"].push_back(
+        {{"type", "perspective"}, {"perspective", {{"yfov", view.fov_y_rad}, {"znear", blueprint_.near_m}}}});
+  }
+
   void add_nodes() {
     json nodes = json::array();
     for (const Placement& p : blueprint_.placements) {
       json node = {{"mesh", p.model}, {"translation", array_of(p.position)}};
       if (p.turn_rad != 0.0)
         node["rotation"] = {0.0, exact_sin(p.turn_rad / 2), 0.0, exact_cos(p.turn_rad / 2)};
+      if (p.scale != 1.0) node["scale"] = {p.scale, p.scale, p.scale};
       nodes.push_back(std::move(node));
     }
-    nodes.push_back({{"name", "suggested"},
-                     {"camera", 0},
-                     {"translation", array_of(blueprint_.eye)},
-                     {"rotation", look_rotation(blueprint_.target - blueprint_.eye)}});
-    root_["cameras"] =
-        json::array({{{"type", "perspective"},
-                      {"perspective", {{"yfov", blueprint_.fov_y_rad}, {"znear", blueprint_.near_m}}}}});
+    add_camera(nodes, {"suggested", blueprint_.eye, blueprint_.target, blueprint_.fov_y_rad});
+    for (const View& view : blueprint_.more_views) add_camera(nodes, view);
     nodes.push_back({{"name", "sun"},
                      {"rotation", look_rotation(blueprint_.sun_direction)},
                      {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});

@@ -17,6 +17,7 @@ struct Look {
   bool double_sided = false;
   int texture = -1;  ///< of Blueprint::textures, over the color
   bool unlit = false;
+  bool alpha_test = false;  ///< the texture's alpha cuts holes
 };
 
 struct Piece {
@@ -33,6 +34,13 @@ struct Placement {
   int model = 0;
   glm::dvec3 position{0.0};
   double turn_rad = 0.0;  ///< about y
+  double scale = 1.0;
+};
+
+struct View {
+  std::string name;
+  glm::dvec3 eye{0.0}, target{0.0};
+  double fov_y_rad = 1.0471975511965976;
 };
 
 struct Blueprint {
@@ -43,6 +51,7 @@ struct Blueprint {
   glm::dvec3 eye{0, 1, 5}, target{0.0};
   double fov_y_rad = 1.0471975511965976;
   double near_m = 0.1;
+  std::vector<View> more_views;  ///< after the camera `suggested`, which the lines above describe
   glm::dvec3 sun_direction{0.4, -1.0, -0.35};
   double sun_lux = 1.0;
 };

@@ -57,15 +57,17 @@ Bytes zlib_stored(const Bytes& data) {
 
 }  // namespace
 
-Bytes encode_png(int width, int height, const std::vector<std::uint32_t>& texels) {
+Bytes encode_png(int width, int height, const std::vector<std::uint32_t>& texels, bool with_alpha) {
   Bytes header;
   append_be32(header, static_cast<std::uint32_t>(width));
   append_be32(header, static_cast<std::uint32_t>(height));
-  header.insert(header.end(), {8, 2, 0, 0, 0});  // 8 bits, RGB, no interlace
+  // 8 bits, RGBA or RGB, no interlace
+  header.insert(header.end(), {8, static_cast<std::uint8_t>(with_alpha ? 6 : 2), 0, 0, 0});
   Bytes rows;
   for (std::size_t i = 0; i < texels.size(); ++i) {
     if (i % static_cast<std::size_t>(width) == 0) rows.push_back(0);  // filter: none
-    for (int shift = 0; shift < 24; shift += 8) rows.push_back(static_cast<std::uint8_t>(texels[i] >> shift));
+    for (int shift = 0; shift < (with_alpha ? 32 : 24); shift += 8)
+      rows.push_back(static_cast<std::uint8_t>(texels[i] >> shift));
   }
   Bytes out = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   append_chunk(out, "IHDR", header);

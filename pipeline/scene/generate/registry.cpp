@@ -7,7 +7,7 @@ namespace hwsim::pipeline::generate {
 std::span<const Generator> registry() {
   static const std::vector<Generator> generators = {
       // constant data; the only list a new generator joins
-      sponza_hall(), grass(), powerplant(), dragon(), wires(), text_page(),
+      sponza_hall(), grass(), powerplant(), dragon(), wires(), text_page(), old_city(), foliage(),
   };
   return generators;
 }

@@ -32,6 +32,8 @@ Generator powerplant();
 Generator dragon();
 Generator wires();
 Generator text_page();
+Generator old_city();
+Generator foliage();
 
 std::span<const Generator> registry();
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "pipeline/scene/generate/exact_math.h"
-#include "pipeline/scene/generate/png.h"
 #include "pipeline/scene/generate/registry.h"
+#include "pipeline/scene/generate/textures.h"
 
 namespace hwsim::pipeline::generate {
 namespace {
@@ -24,46 +24,6 @@ enum ModelIndex {
   kCurtainModel,
   kCurtainModels = 2
 };
-
-std::uint32_t rgb(double r, double g, double b) {
-  const auto byte = [](double v) {
-    return static_cast<std::uint32_t>(std::clamp(v, 0.0, 1.0) * 255.0 + 0.5);
-  };
-  return byte(r) | byte(g) << 8 | byte(b) << 16;
-}
-
-std::vector<std::uint8_t> checker_png(Pcg& random, int size) {
-  std::vector<std::uint32_t> texels;
-  for (int y = 0; y < size; ++y)
-    for (int x = 0; x < size; ++x) {
-      const bool dark = (x * 2 / size + y * 2 / size) % 2 == 1;
-      const double grain = random.uniform(-0.05, 0.05);
-      texels.push_back(dark ? rgb(0.42 + grain, 0.3 + grain, 0.25 + grain)
-                            : rgb(0.78 + grain, 0.73 + grain, 0.65 + grain));
-    }
-  return encode_png(size, size, texels);
-}
-
-std::vector<std::uint8_t> brick_png(Pcg& random, int size) {
-  constexpr int kRows = 8, kColumns = 4;
-  double tone[kRows][kColumns];
-  for (auto& row : tone)
-    for (double& t : row) t = random.uniform(-0.1, 0.1);
-  std::vector<std::uint32_t> texels;
-  for (int y = 0; y < size; ++y)
-    for (int x = 0; x < size; ++x) {
-      const double v = static_cast<double>(y) * kRows / size;
-      const int row = static_cast<int>(v);
-      const double u = static_cast<double>(x) * kColumns / size + (row % 2) * 0.5;
-      const int column = static_cast<int>(u) % kColumns;
-      const double grain = random.uniform(-0.04, 0.04);
-      const bool mortar = u - std::floor(u) < 0.05 || v - row < 0.1;
-      const double t = tone[row][column] + grain;
-      texels.push_back(mortar ? rgb(0.7 + grain, 0.68 + grain, 0.62 + grain)
-                              : rgb(0.62 + t, 0.42 + t, 0.32 + t));
-    }
-  return encode_png(size, size, texels);
-}
 
 Model column_model(int detail) {
   std::vector<dvec2> profile = {{0.42, 0.0}, {0.42, 0.15}, {0.36, 0.2}, {0.38, 0.27}, {kColumnRadius, 0.32}};

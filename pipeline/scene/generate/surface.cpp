@@ -175,4 +175,14 @@ void add_grid(Surface& s, int nu, int nv, bool closed_u, bool closed_v,
   for (std::size_t i = 0; i < sums.size(); ++i) s.normals[base + i] = glm::vec3(unit(sums[i]));
 }
 
+void add_turned(Surface& s, const Surface& part, double turn_rad, const dvec3& offset) {
+  const double c = exact_cos(turn_rad), d = exact_sin(turn_rad);
+  const auto turned = [&](const dvec3& v) { return dvec3(c * v.x + d * v.z, v.y, c * v.z - d * v.x); };
+  const auto base = static_cast<std::uint32_t>(s.positions.size());
+  for (const glm::vec3& p : part.positions) s.positions.emplace_back(turned(dvec3(p)) + offset);
+  for (const glm::vec3& n : part.normals) s.normals.emplace_back(turned(dvec3(n)));
+  s.uvs.insert(s.uvs.end(), part.uvs.begin(), part.uvs.end());
+  for (const std::uint32_t i : part.indices) s.indices.push_back(base + i);
+}
+
 }  // namespace hwsim::pipeline::generate

@@ -41,4 +41,7 @@ void add_lathe(Surface& s, const glm::dvec3& foot, const std::vector<glm::dvec2>
 void add_grid(Surface& s, int nu, int nv, bool closed_u, bool closed_v,
               const std::function<glm::dvec3(double u, double v)>& point);
 
+/// A copy of `part`, turned about the y axis as Placement does, then moved.
+void add_turned(Surface& s, const Surface& part, double turn_rad, const glm::dvec3& offset);
+
 }  // namespace hwsim::pipeline::generate
