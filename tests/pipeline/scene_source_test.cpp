@@ -70,9 +70,14 @@ TEST(SceneSource, CamerasSeeTheirScene) {
 TEST(SceneSource, BytesAreTheSameOnEveryMachine) {
   const TemporaryFolder folder("golden");
   const std::vector<std::pair<std::string, std::string>> golden = {
-      {"dragon", "a841e676ec9b4dedec6587694b6c1493"},     {"grass", "ef015c72420f700f5b413b925fa6eb9f"},
-      {"powerplant", "3610ded91ecc752ded6604085f70e298"}, {"sponza_hall", "801b52a717b7bd84d0603c23ec2d23f8"},
-      {"text_page", "43f3e500d69210323dd28c0880eec4c9"},  {"wires", "c960dcdac7605797179a0883f69efefa"}};
+      {"dragon", "a841e676ec9b4dedec6587694b6c1493"},
+      {"grass", "ef015c72420f700f5b413b925fa6eb9f"},
+      {"powerplant", "3610ded91ecc752ded6604085f70e298"},
+      {"sponza_hall", "801b52a717b7bd84d0603c23ec2d23f8"},
+      {"text_page", "43f3e500d69210323dd28c0880eec4c9"},
+      {"wires", "c960dcdac7605797179a0883f69efefa"},
+      {"old_city", "872138ebf6ed747fa239c6c7155c885d"},
+      {"foliage", "e46b4bc62ca5bbacbd441934af050b99"}};
   for (const auto& [name, want] : golden) {
     write_generated_scene(name, {}, folder.path() + "/a.glb");
     ContentHash hash;
