@@ -19,7 +19,7 @@ namespace {
 using Values = std::map<std::string, double>;
 
 // Raised when a generator's output changes, so that no older cached file is taken for it.
-constexpr int kGeneratorVersion = 1;
+constexpr int kGeneratorVersion = 2;
 
 [[noreturn]] void fail(const std::string& code, const std::string& message, const std::string& hint = "",
                        const std::string& help = "") {

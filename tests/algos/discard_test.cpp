@@ -52,8 +52,7 @@ Emulation run(const std::string& technique, int specks) {
   request.width_px = 128;
   request.height_px = 72;
   request.shadows = false;
-  const TechniqueChoice choice = parse_technique(technique);
-  return emulate(choice.info->build(request, choice.parameters), request.features, request.functional, {});
+  return emulate(build_frame(parse_technique(technique), request), request.features, request.functional, {});
 }
 
 TEST(Discard, DiscardedFragmentsDoNotHideWhatIsBehind) {

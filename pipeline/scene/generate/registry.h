@@ -4,6 +4,7 @@
 #include <string>
 
 #include "pipeline/scene/generate/blueprint.h"
+#include "pipeline/scene/generate/exact_math.h"
 #include "pipeline/scene/scene_source.h"
 
 namespace hwsim::pipeline::generate {
@@ -14,6 +15,7 @@ class Parameters {
   explicit Parameters(std::map<std::string, double> values) : values_(std::move(values)) {}
   double number(const char* name) const { return values_.at(name); }
   int count(const char* name) const { return static_cast<int>(values_.at(name)); }
+  double fov_y_rad() const { return number("fov_deg") * kPi / 180.0; }
   std::uint64_t seed() const { return static_cast<std::uint64_t>(values_.at("seed")); }
 
  private:
@@ -34,10 +36,18 @@ Generator wires();
 Generator text_page();
 Generator old_city();
 Generator foliage();
+Generator car_body();
+Generator fur_ball();
+Generator bamboo();
+Generator metal();
+Generator grill();
 
 std::span<const Generator> registry();
 
 /// Every generator has it; whole, so that it survives the way through a double.
 GeneratorParameter seed_parameter();
+
+/// The vertical angle of the camera `suggested`.
+GeneratorParameter fov_parameter(double default_deg);
 
 }  // namespace hwsim::pipeline::generate
