@@ -115,7 +115,6 @@ std::span<const CounterViolation> check_conservation(const PassCounters& c,
                 c.zrop.touched_tiles);
   check.at_most("crop.first_touched_tiles <= crop.touched_tiles", c.crop.first_touched_tiles,
                 c.crop.touched_tiles);
-  check.at_most("tex.first_touched_lines <= tex.texels", c.tex.first_touched_lines, c.tex.texels);
   return check.found();
 }
 

@@ -17,12 +17,32 @@ void describe_fields(Visitor& v, Target& target) {
   v.field("blended", blended);
 }
 
+template <class Visitor, class Curve>
+requires std::same_as<std::remove_const_t<Curve>, MissCurve>
+void describe_fields(Visitor& v, Curve& curve) {
+  auto& [requested_read_bytes, requested_write_bytes, read_bytes, first_read_bytes, write_bytes] = curve;
+  v.field("requested_read_bytes", requested_read_bytes);
+  v.field("requested_write_bytes", requested_write_bytes);
+  v.field("read_bytes", read_bytes);
+  v.field("first_read_bytes", first_read_bytes);
+  v.field("write_bytes", write_bytes);
+}
+
+template <class Visitor, class Profile>
+requires std::same_as<std::remove_const_t<Profile>, ReuseProfile>
+void describe_fields(Visitor& v, Profile& profile) {
+  auto& [shared, apart, texture_l1] = profile;
+  v.field("shared", shared);
+  v.field("apart", apart);
+  v.field("texture_l1", texture_l1);
+}
+
 template <class Visitor, class Pass>
 requires std::same_as<std::remove_const_t<Pass>, PassWork>
 void describe_fields(Visitor& v, Pass& pass) {
   auto& [name, kind, width_px, height_px, raster_samples, sample_rate, barrier_before, depth_format,
-         depth_samples, depth_cleared_before, color_cleared_before, color_targets, attribute_scalars,
-         unique_vertex_bytes, unique_index_bytes, unique_storage_bytes, chunks] = pass;
+         depth_samples, depth_cleared_before, color_cleared_before, color_targets, attribute_scalars, reuse,
+         chunks] = pass;
   v.field("name", name);
   v.field("kind", kind);
   v.field("width_px", width_px);
@@ -36,9 +56,7 @@ void describe_fields(Visitor& v, Pass& pass) {
   v.field("color_cleared_before", color_cleared_before);
   v.field("color_targets", color_targets);
   v.field("attribute_scalars", attribute_scalars);
-  v.field("unique_vertex_bytes", unique_vertex_bytes);
-  v.field("unique_index_bytes", unique_index_bytes);
-  v.field("unique_storage_bytes", unique_storage_bytes);
+  v.field("reuse", reuse);
   v.field("chunks", chunks);
 }
 

@@ -8,6 +8,7 @@
 
 #include "hwsim/counters.h"
 #include "hwsim/format.h"
+#include "hwsim/reuse.h"
 
 namespace hwsim {
 
@@ -36,9 +37,7 @@ struct PassWork {
   bool color_cleared_before = false;  ///< its color targets were: likewise
   std::vector<ColorTargetWork> color_targets;
   int attribute_scalars = 0;  ///< 32-bit values that the rasterizer interpolates for each fragment
-  std::uint64_t unique_vertex_bytes = 0;  ///< distinct bytes of vertex buffers read
-  std::uint64_t unique_index_bytes = 0;
-  std::uint64_t unique_storage_bytes = 0;  ///< distinct bytes of storage buffers read and written
+  ReuseProfile reuse;         ///< what caches of any size let through
   std::vector<PassCounters> chunks;
 };
 

@@ -174,9 +174,9 @@ void describe_memory(V& v, GpuValues<T>& c) {
   v.key({"rop_through_l2", 0, 0, kNoFlags,
          "depth and color go through L2; otherwise through the ROPs' own caches"},
         c.rop_through_l2);
-  v.key({"crop_cache_kib", 0, kKibHigh, kRate, "color caches of the chip, where not through L2"},
+  v.key({"crop_cache_kib", 0, kKibHigh, kRate, "color caches of the chip, before L2 or instead of it"},
         c.crop_cache_kib);
-  v.key({"zrop_cache_kib", 0, kKibHigh, kRate, "depth caches of the chip, where not through L2"},
+  v.key({"zrop_cache_kib", 0, kKibHigh, kRate, "depth caches of the chip, before L2 or instead of it"},
         c.zrop_cache_kib);
   v.key({"l2_size_kib", 1, kKibHigh, kRequired | kRate, "L2 of the chip (Intel: L3)"}, c.l2_size_kib);
   v.key({"l2_bytes_per_clk", kRateLow, kRateHigh, kRequired | kFit | kRate, "L2 bandwidth"},

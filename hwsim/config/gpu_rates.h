@@ -24,13 +24,14 @@ struct GpuRates {
   T shader_cores, subgroups_max, registers, alu_latency_ns, tex_latency_ns, l2_latency_ns, dram_latency_ns;
   T alu_lane_op_ns, sfu_lane_op_ns, interp_scalar_ns, memory_word_ns, group_memory_word_ns, atomic_ns,
       same_address_atomic_ns;
-  T bilinear_probe_ns, fetch_64bit_cost, fetch_128bit_cost, l1_fill_byte_ns, l1_retouch_ratio;
+  T bilinear_probe_ns, fetch_64bit_cost, fetch_128bit_cost, l1_fill_byte_ns, l1_bytes;
   std::array<T, kRateClassCount> color_px_ns,
       blended_px_ns;                               ///< gpus section 0, rule 1: min(raster, export, ROP)
   std::array<T, kRateClassCount> color_sample_ns;  ///< multisample writes, the ROPs alone
   T resolve_sample_ns;
   T l2_byte_ns, dram_byte_ns;
-  T l2_bytes, crop_cache_bytes, zrop_cache_bytes;  ///< with the last-level cache behind them
+  T l2_bytes;  ///< with the last-level cache behind it
+  T crop_cache_bytes, zrop_cache_bytes, llc_bytes;
   T color_traffic_ratio, depth_traffic_ratio;
   T clear_color_tile_bytes, clear_depth_tile_bytes;
   T pass_overhead_ns, roofline_exponent;
@@ -136,15 +137,12 @@ void derive_geometry(const GpuValues<T>& c, const T& clk_ns, GpuRates<T>& r) {
 
 template <class T>
 void derive_texture(const GpuValues<T>& c, const T& clk_ns, GpuRates<T>& r) {
-  using std::sqrt;
   const T probe_ns = clk_ns / (c.tex_bilinear_per_clk * c.tex_efficiency_ratio);
   r.bilinear_probe_ns = probe_ns;
   r.fetch_64bit_cost = 1.0 / c.tex_64bit_ratio;
   r.fetch_128bit_cost = 1.0 / c.tex_128bit_ratio;
   r.l1_fill_byte_ns = clk_ns / (c.shader_cores * c.l1_fill_bytes_per_core_clk);
-  // The trace counts the misses of 16 KiB. Misses of other sizes follow the square-root rule (Hartstein et
-  // al., "On the nature of cache miss behavior: is it sqrt(2)?", 2008), for the re-touches only.
-  r.l1_retouch_ratio = sqrt(16.0 / c.l1_size_kib);
+  r.l1_bytes = c.l1_size_kib * 1024.0;
   r.resolve_sample_ns = c.resolve_samples_per_clk > T(0.0) ? T(clk_ns / c.resolve_samples_per_clk) : probe_ns;
 }
 
@@ -154,8 +152,9 @@ void derive_memory(const GpuValues<T>& c, const T& clk_ns, GpuRates<T>& r) {
   r.l2_byte_ns = clk_ns / c.l2_bytes_per_clk;
   r.dram_byte_ns = 1.0 / (c.dram_bandwidth_gb_s * c.dram_efficiency_ratio * (1.0 - c.dram_cpu_share_ratio));
   r.l2_bytes = (c.l2_size_kib + c.llc_size_kib) * kKib;
-  r.crop_cache_bytes = (c.crop_cache_kib + c.llc_size_kib) * kKib;
-  r.zrop_cache_bytes = (c.zrop_cache_kib + c.llc_size_kib) * kKib;
+  r.crop_cache_bytes = c.crop_cache_kib * kKib;
+  r.zrop_cache_bytes = c.zrop_cache_kib * kKib;
+  r.llc_bytes = c.llc_size_kib * kKib;
   r.color_traffic_ratio = c.color_traffic_ratio;
   r.depth_traffic_ratio = c.depth_traffic_ratio;
   r.clear_color_tile_bytes = c.fast_clear_color_bytes_per_tile;

@@ -167,9 +167,9 @@ T resolve_ns(const PassCounters& c, const PassWork& pass, const GpuRates<T>& r) 
 }
 
 template <class T>
-ChunkCost<T> chunk_cost(const PassCounters& c, const PassWork& pass, const PassShape& shape,
-                        const TrafficModel<T>& model, const GpuRates<T>& r) {
-  const ChunkTraffic<T> traffic = chunk_traffic(c, shape, model, r);
+ChunkCost<T> chunk_cost(const PassCounters& c, const PassWork& pass, const TrafficModel<T>& model,
+                        const GpuRates<T>& r) {
+  const ChunkTraffic<T> traffic = chunk_traffic(c, model, r);
   ChunkCost<T> cost;
   cost.dram = traffic.dram;
   const auto set = [&cost](Unit unit, const T& ns) { cost.ns[at(unit)] = ns; };

@@ -30,7 +30,7 @@ std::vector<ChunkCost<T>> chunk_costs(const PassWork& pass, const GpuRates<T>& r
   const PassShape shape = shape_of(pass);
   const TrafficModel<T> model = model_traffic(shape, pass, rates);
   costs.reserve(pass.chunks.size());
-  for (const PassCounters& chunk : pass.chunks) costs.push_back(chunk_cost(chunk, pass, shape, model, rates));
+  for (const PassCounters& chunk : pass.chunks) costs.push_back(chunk_cost(chunk, pass, model, rates));
   return costs;
 }
 

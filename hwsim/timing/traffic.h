@@ -1,10 +1,7 @@
 #pragma once
-// Bytes that a pass moves through L2 and DRAM, from what its units asked for (docs/hardware_model.md,
-// "Memory").
-//   moved = compulsory + miss * (requested - compulsory),   miss = max(0, 1 - cache / footprint)
-// compulsory: the first touch of each block in the pass; it costs no read where the target was cleared. The
-// footprint is that of the pass, so locality between neighbors in a large pass is underrated; reuse distances
-// would say it exactly.
+// Bytes that a pass moves through L2 and DRAM, from what its units asked for and the reuse distances that the
+// trace keeps (docs/hardware_model.md, "Memory"): of the bytes that a stream requests in a pass, a cache of
+// the GPU's size lets a part through, and each chunk's requests are charged that part.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -16,7 +13,7 @@
 namespace hwsim {
 
 inline constexpr double kTilePixels = 64.0;        // the trace's tiles are 8x8 pixels
-inline constexpr double kTextureLineBytes = 64.0;  // and its texture lines 64 bytes
+inline constexpr double kTextureLineBytes = 64.0;  // and its lines 64 bytes
 
 constexpr std::size_t at(Stream stream) { return static_cast<std::size_t>(stream); }
 constexpr std::size_t at(Unit unit) { return static_cast<std::size_t>(unit); }
@@ -44,75 +41,90 @@ struct StreamBytesOf {
 
 /// What does not depend on the GPU, once a pass.
 struct PassShape {
-  double color_tile_bytes = 0.0;  ///< mean of the targets
-  double depth_tile_bytes = 0.0;
   double color_samples = 1.0;       ///< mean of the targets
   double uncompressed_ratio = 1.0;  ///< color samples written outside of single-color pixels / all written
-  double color_footprint_bytes = 0.0;
-  double depth_footprint_bytes = 0.0;
-  StreamBytes requested;   ///< capped at the tiles touched; without textures
-  StreamBytes compulsory;  ///< of these
-  double texture_footprint_bytes = 0.0;
   PassCounters sum;
 };
 
-/// What a chunk asks of memory, by stream, without textures. Overdraw inside a chunk stays in the ROP: a tile
-/// moves at most once for each chunk that uses it.
-StreamBytes requested_bytes(const PassCounters& chunk, const PassShape& shape);
+/// What a chunk asks of memory, by stream, textures included.
+StreamBytes requested_bytes(const PassCounters& chunk);
 
 PassShape shape_of(const PassWork& pass);
 
+/// Bytes moved for each byte requested.
 template <class T>
 struct TrafficModel {
-  StreamBytesOf<T> factor;  ///< DRAM bytes a requested byte
-  T texture_miss{0.0};
-  T color_scale{1.0};  ///< multisample compression, in DRAM and L2
+  StreamBytesOf<T> dram, l2;
+  T l1_fill{1.0};  ///< texture bytes beyond L1
 };
 
 template <class T>
-T miss_ratio(const T& cache_bytes, double footprint_bytes) {
-  if (footprint_bytes <= 0.0) return T(0.0);
-  return larger(T(0.0), T(1.0 - cache_bytes / footprint_bytes));
+struct MovedRatio {
+  T read, write;
+};
+
+/// A target that was cleared is not read for a block's first stay.
+template <class T>
+MovedRatio<T> moved_by(const MissCurve& curve, const T& cache_bytes, bool cleared_before) {
+  MovedRatio<T> moved{moved_ratio(curve.read_bytes, curve.requested_read_bytes, cache_bytes),
+                      moved_ratio(curve.write_bytes, curve.requested_write_bytes, cache_bytes)};
+  if (cleared_before && curve.requested_read_bytes > 0)
+    moved.read -= moved_ratio(curve.first_read_bytes, curve.requested_read_bytes, cache_bytes);
+  return moved;
 }
 
-/// DRAM bytes a requested byte of a stream.
+/// Color or depth: a cache in the ROPs, and L2 behind it where they go through it. Tile memory keeps a tile
+/// for the whole pass.
 template <class T>
-T moved_factor(double requested, double compulsory, const T& miss, bool first_touch_free) {
-  if (requested <= 0.0) return T(0.0);
-  return ((first_touch_free ? 0.0 : compulsory) + miss * (requested - compulsory)) / requested;
+void model_rop(const PassWork& pass, ReuseStream reuse, const GpuRates<T>& r, TrafficModel<T>& model) {
+  const bool color = reuse == ReuseStream::color;
+  const std::size_t i = at(color ? Stream::color : Stream::depth);
+  const bool cleared = color ? pass.color_cleared_before : pass.depth_cleared_before;
+  const T& own_cache = color ? r.crop_cache_bytes : r.zrop_cache_bytes;
+  const MissCurve& apart = pass.reuse.apart[at(reuse)];
+  const bool through_l2 = r.rop_through_l2 && !r.tile_based;
+  const T whole_pass(kSmallestCacheBytes * (1 << (kCacheSizes - 1)));
+  const MovedRatio<T> dram = r.tile_based ? moved_by(apart, whole_pass, cleared)
+                             : through_l2 ? moved_by(pass.reuse.shared[at(reuse)], r.l2_bytes, cleared)
+                                          : moved_by(apart, T(own_cache + r.llc_bytes), cleared);
+  const MovedRatio<T> l2 = through_l2 ? moved_by(apart, own_cache, cleared) : MovedRatio<T>{T(0.0), T(0.0)};
+  model.dram.read[i] = dram.read;
+  model.dram.write[i] = dram.write;
+  model.l2.read[i] = larger(l2.read, through_l2 ? dram.read : T(0.0));
+  model.l2.write[i] = larger(l2.write, through_l2 ? dram.write : T(0.0));
 }
 
 template <class T>
 TrafficModel<T> model_traffic(const PassShape& shape, const PassWork& pass, const GpuRates<T>& rates) {
   TrafficModel<T> model;
-  const StreamBytes& first = shape.compulsory;
-  const auto both = [&first](Stream s) { return first.read[at(s)] + first.write[at(s)]; };
-  const double buffers = both(Stream::storage) + both(Stream::vertex) + both(Stream::index);
-  const double rop = rates.rop_through_l2 ? shape.color_footprint_bytes + shape.depth_footprint_bytes : 0.0;
-  const T l2_miss = miss_ratio(rates.l2_bytes, buffers + rop + shape.texture_footprint_bytes);
-  T color_miss =
-      rates.rop_through_l2 ? l2_miss : miss_ratio(rates.crop_cache_bytes, shape.color_footprint_bytes);
-  T depth_miss =
-      rates.rop_through_l2 ? l2_miss : miss_ratio(rates.zrop_cache_bytes, shape.depth_footprint_bytes);
-  if (rates.tile_based) color_miss = depth_miss = T(0.0);  // a tile is loaded and stored once a pass
-  model.texture_miss = l2_miss;
-  if (rates.msaa_color_compression && shape.color_samples > 1.0)
-    model.color_scale = T(shape.uncompressed_ratio + (1.0 - shape.uncompressed_ratio) / shape.color_samples);
-  const auto set = [&](Stream s, const T& miss, bool cleared) {
-    const auto i = at(s);
-    model.factor.read[i] = moved_factor(shape.requested.read[i], first.read[i], miss, cleared);
-    model.factor.write[i] = moved_factor(shape.requested.write[i], first.write[i], miss, false);
+  model.dram.read.fill(T(1.0));
+  model.dram.write.fill(T(1.0));
+  model.l2 = model.dram;
+  model_rop(pass, ReuseStream::color, rates, model);
+  model_rop(pass, ReuseStream::depth, rates, model);
+  const auto& in_l2 = rates.rop_through_l2 && !rates.tile_based ? pass.reuse.shared : pass.reuse.apart;
+  const auto set = [&](Stream stream, ReuseStream reuse) {
+    const MovedRatio<T> moved = moved_by(in_l2[at(reuse)], rates.l2_bytes, false);
+    model.dram.read[at(stream)] = moved.read;
+    model.dram.write[at(stream)] = moved.write;
   };
-  set(Stream::color, color_miss, pass.color_cleared_before);
-  set(Stream::depth, depth_miss, pass.depth_cleared_before);
-  for (const Stream s :
-       {Stream::storage, Stream::vertex, Stream::index, Stream::constant, Stream::shader, Stream::other})
-    set(s, l2_miss, false);
-  const T color = model.color_scale * rates.color_traffic_ratio;
-  model.factor.read[at(Stream::color)] *= color;
-  model.factor.write[at(Stream::color)] *= color;
-  model.factor.read[at(Stream::depth)] *= rates.depth_traffic_ratio;
-  model.factor.write[at(Stream::depth)] *= rates.depth_traffic_ratio;
+  set(Stream::storage, ReuseStream::storage);
+  set(Stream::vertex, ReuseStream::geometry);
+  set(Stream::index, ReuseStream::geometry);
+  set(Stream::texture, ReuseStream::texture);
+  model.l1_fill = moved_by(pass.reuse.texture_l1, rates.l1_bytes, false).read;
+  model.l2.read[at(Stream::texture)] = model.l1_fill;
+  model.dram.read[at(Stream::texture)] = smaller(model.dram.read[at(Stream::texture)], model.l1_fill);
+  T color_scale(1.0);
+  if (rates.msaa_color_compression && shape.color_samples > 1.0)
+    color_scale = T(shape.uncompressed_ratio + (1.0 - shape.uncompressed_ratio) / shape.color_samples);
+  for (std::array<T, kStreamCount>* moved :
+       {&model.dram.read, &model.dram.write, &model.l2.read, &model.l2.write})
+    (*moved)[at(Stream::color)] *= color_scale;
+  for (std::array<T, kStreamCount>* moved : {&model.dram.read, &model.dram.write}) {
+    (*moved)[at(Stream::color)] *= rates.color_traffic_ratio;
+    (*moved)[at(Stream::depth)] *= rates.depth_traffic_ratio;
+  }
   return model;
 }
 
@@ -129,34 +141,17 @@ struct ChunkTraffic {
   T storage_read_bytes{0.0};
 };
 
-/// Texture lines that miss L1: first touches, and re-touches scaled from the trace's 16 KiB to the GPU's L1.
 template <class T>
-T l1_missed_lines(const PassCounters& c, const GpuRates<T>& rates) {
-  const auto first = static_cast<double>(c.tex.first_touched_lines);
-  const auto again = std::max(0.0, static_cast<double>(c.tex.touched_lines) - first);
-  const T lines = first + again * rates.l1_retouch_ratio;
-  return smaller(lines, T(std::max(first + again, static_cast<double>(c.tex.texels))));
-}
-
-template <class T>
-ChunkTraffic<T> chunk_traffic(const PassCounters& c, const PassShape& shape, const TrafficModel<T>& model,
-                              const GpuRates<T>& rates) {
+ChunkTraffic<T> chunk_traffic(const PassCounters& c, const TrafficModel<T>& model, const GpuRates<T>& rates) {
   ChunkTraffic<T> traffic;
-  const StreamBytes asked = requested_bytes(c, shape);
+  const StreamBytes asked = requested_bytes(c);
   for (std::size_t i = 0; i < kStreamCount; ++i) {
-    traffic.dram.read[i] = asked.read[i] * model.factor.read[i];
-    traffic.dram.write[i] = asked.write[i] * model.factor.write[i];
-    const bool rop = i == at(Stream::color) || i == at(Stream::depth);
-    if (rop && (!rates.rop_through_l2 || rates.tile_based)) continue;
-    const T bytes(asked.read[i] + asked.write[i]);
-    traffic.l2_bytes += i == at(Stream::color) ? T(bytes * model.color_scale) : bytes;
+    traffic.dram.read[i] = asked.read[i] * model.dram.read[i];
+    traffic.dram.write[i] = asked.write[i] * model.dram.write[i];
+    traffic.l2_bytes += asked.read[i] * model.l2.read[i] + asked.write[i] * model.l2.write[i];
   }
   traffic.storage_read_bytes = T(asked.read[at(Stream::storage)]);
-  const T lines = l1_missed_lines(c, rates);
-  const auto first = static_cast<double>(c.tex.first_touched_lines);
-  traffic.l1_fill_bytes = lines * kTextureLineBytes;
-  traffic.l2_bytes += traffic.l1_fill_bytes;
-  traffic.dram.read[at(Stream::texture)] = (first + model.texture_miss * (lines - first)) * kTextureLineBytes;
+  traffic.l1_fill_bytes = asked.read[at(Stream::texture)] * model.l1_fill;
   if (rates.tile_based) {  // vertices that binning writes and the tiles read back
     const double binned = 4.0 * static_cast<double>(c.vs.output_scalars);
     traffic.dram.write[at(Stream::other)] += binned;

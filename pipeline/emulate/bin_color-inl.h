@@ -38,12 +38,14 @@ class BinColor : protected BinDepth {
       }
       if (any_lane == 0) continue;
       const bool all_samples = last_sample - first_sample == samples_;
-      count_color(image, block, popcount(any_lane), all_samples ? popcount(every_sample) : 0, written, reads);
+      count_color(target, block, popcount(any_lane), all_samples ? popcount(every_sample) : 0, written,
+                  reads);
     }
   }
 
-  void count_color(GpuImage& image, int block, std::uint64_t fragments, std::uint64_t single_color,
+  void count_color(std::size_t target, int block, std::uint64_t fragments, std::uint64_t single_color,
                    std::uint64_t written, bool reads) {
+    GpuImage& image = *c_.color[target];
     PassCounters& n = w_.counters();
     touch_tile(image, block, w_.current_chunk, n.crop);
     const auto bytes = static_cast<std::uint64_t>(info(image.format).bytes);
@@ -55,6 +57,9 @@ class BinColor : protected BinDepth {
       n.crop.blended_samples += written;
       n.mem.color_read_bytes += written * bytes;
     }
+    const auto tile =
+        static_cast<std::uint32_t>(target * image.touched_chunk.size()) + static_cast<std::uint32_t>(block);
+    w_.tracker.touch_if_sampled(ReuseStream::color, tile, reads ? written * bytes : 0, written * bytes);
   }
 
   void write_color(const FragmentBatch& batch, const std::int32_t* block, const std::int32_t* quad_in_block,
@@ -72,7 +77,7 @@ class BinColor : protected BinDepth {
         if (reads) blend_batch(image, state, batch.color[target], to, s, texels);
         write_sample(image, to, batch.sample_index >= 0, s, texels);
       }
-      count_quads(image, to, batch.sample_index >= 0, first_sample, last_sample, reads);
+      count_quads(target, to, batch.sample_index >= 0, first_sample, last_sample, reads);
     }
   }
 
@@ -92,7 +97,7 @@ class BinColor : protected BinDepth {
     }
   }
 
-  void count_quads(GpuImage& image, const WriteTargets& to, bool of_sample_batch, int first_sample,
+  void count_quads(std::size_t target, const WriteTargets& to, bool of_sample_batch, int first_sample,
                    int last_sample, bool reads) {
     for (int q = 0; q < to.count; ++q) {
       std::uint64_t written = 0;
@@ -105,7 +110,7 @@ class BinColor : protected BinDepth {
       }
       if (lanes == 0) continue;
       const bool all_samples = last_sample - first_sample == samples_;
-      count_color(image, to.block[q], popcount(lanes), all_samples ? popcount(all) : 0, written, reads);
+      count_color(target, to.block[q], popcount(lanes), all_samples ? popcount(all) : 0, written, reads);
     }
   }
 };

@@ -51,15 +51,24 @@ class BinDepth {
   }
 
   void count_depth_traffic(std::uint64_t tested, std::uint64_t passed, PassCounters& n) const {
-    const PipelineState& state = *w_.state;
     n.stats.samples_passed += passed;
     const auto bytes = static_cast<std::uint64_t>(c_.depth_bytes);
     n.mem.depth_read_bytes += tested * bytes;
-    const bool stencil_writes = state.stencil.test && (state.stencil.on_pass != StencilOp::keep);
-    if (state.depth.write || stencil_writes) {
+    if (writes_depth()) {
       n.zrop.written_samples += passed;
       n.mem.depth_write_bytes += passed * bytes;
     }
+  }
+
+  bool writes_depth() const {
+    const PipelineState& state = *w_.state;
+    return state.depth.write || (state.stencil.test && state.stencil.on_pass != StencilOp::keep);
+  }
+
+  void track_depth(int block, std::uint64_t tested, std::uint64_t passed) const {
+    const auto bytes = static_cast<std::uint64_t>(c_.depth_bytes);
+    w_.tracker.touch_if_sampled(ReuseStream::depth, static_cast<std::uint32_t>(block), tested * bytes,
+                                writes_depth() ? passed * bytes : 0);
   }
 
   /// A null `plane` tests stencil alone (full-screen passes).
@@ -136,6 +145,7 @@ class BinDepth {
     } else {
       test_tile(t, nullptr, x, y, CoarseResult::ambiguous, masks);
     }
+    track_depth(c_.depth->block_index(x, y), tested, masks.count);
     n.zrop.late_z_tested_samples += tested;
     n.zrop.late_z_killed_samples += tested - masks.count;
     count_depth_traffic(tested, masks.count, n);
@@ -157,6 +167,7 @@ class BinDepth {
     for (std::size_t q = 0; q < static_cast<std::size_t>(w_.batch.quad_count); ++q) {
       std::uint8_t& mask = w_.samples[q].masks[s];
       if (mask == 0) continue;
+      const std::uint8_t before = mask;
       tested += popcount(mask);
       HWY_ALIGN float values[4] = {};
       if (const RasterTriangle* t = w_.batch.triangle[q];
@@ -172,6 +183,7 @@ class BinDepth {
       c_.depth->use(w_.block[q]);
       touch_depth_tile(w_.block[q]);
       mask = test_quad(state, q, s, values, mask);
+      track_depth(w_.block[q], popcount(before), popcount(mask));
       if (mask != 0 && writes_depth_image()) c_.depth->unsaved[static_cast<std::size_t>(w_.block[q])] = 1;
       passed += popcount(mask);
     }

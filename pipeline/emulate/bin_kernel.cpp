@@ -24,7 +24,7 @@ class BinRunner : private BinShading {
       : BinShading(context, worker),
         bin_x_(bin % context.bins_x * kBinPx),
         bin_y_(bin / context.bins_x * kBinPx) {
-    w_.texture_tracker.reset();
+    w_.tracker.start_bin(static_cast<std::uint32_t>(bin));
     w_.batch.quad_count = 0;
     w_.draw = nullptr;
   }
@@ -71,7 +71,6 @@ class BinRunner : private BinShading {
 
   void start_batch() {
     w_.batch.resources = &w_.resources;
-    w_.batch.texture_tracker = &w_.texture_tracker;
     w_.batch.quad_count = 0;
     w_.batch.sample_index = -1;
     ordered_ = w_.late_z;
@@ -80,6 +79,7 @@ class BinRunner : private BinShading {
 
   void rasterize(const RasterTriangle& t, const Segment& segment, const GeometryItem& item) {
     w_.current_chunk = t.chunk;
+    w_.tracker.start_primitive(t.primitive);
     PassCounters& n = w_.counters();
     const bool conservative = w_.state->raster.conservative;
     TileCoverage coverage = conservative ? TileCoverage(t, std::span(&kPixelCenter, 1), 0, 0, 0, 0)
@@ -146,6 +146,7 @@ class BinRunner : private BinShading {
     }
     const std::uint64_t tested = masks.count;
     test_tile(&t, &plane, x, y, coarse, masks);
+    track_depth(c_.depth->block_index(x, y), tested, masks.count);
     n.zrop.early_z_tested_samples += tested;
     n.zrop.early_z_killed_samples += tested - masks.count;
     count_depth_traffic(tested, masks.count, n);
@@ -163,6 +164,7 @@ class BinRunner : private BinShading {
     if (c_.depth != nullptr && w_.state->stencil.test && !w_.late_z) {
       const std::uint64_t tested = masks.count;
       test_tile(nullptr, nullptr, x, y, CoarseResult::ambiguous, masks);
+      track_depth(c_.depth->block_index(x, y), tested, masks.count);
       n.zrop.early_z_tested_samples += tested;
       n.zrop.early_z_killed_samples += tested - masks.count;
       count_depth_traffic(tested, masks.count, n);

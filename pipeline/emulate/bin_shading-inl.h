@@ -75,7 +75,6 @@ class BinShading : protected BinColor {
                   const GeometryItem* item, int x, int y) {
     batch.material = w_.batch.material;
     batch.resources = w_.batch.resources;
-    batch.texture_tracker = w_.batch.texture_tracker;
     batch.quad_count = kBatchQuads;
     batch.triangle.fill(t);
     for (int quad = 0; quad < kQuadsPerBlock; ++quad) {
@@ -225,7 +224,6 @@ class BinShading : protected BinColor {
         part.quad_count == kBatchQuads ? ~std::uint64_t{0} : (std::uint64_t{1} << (4 * part.quad_count)) - 1;
     part.material = batch.material;
     part.resources = batch.resources;
-    part.texture_tracker = batch.texture_tracker;
     part.sample_index = s;
     for (int q = 0; q < part.quad_count; ++q)
       set_up_quad(part, q, AttributeLocation::sample, c_.positions, s);
@@ -255,12 +253,10 @@ class BinShading : protected BinColor {
     batch.image_texels = {};
     batch.image_read_bytes = 0;
     batch.storage_read_bytes = batch.storage_write_bytes = 0;
-    const std::uint64_t lines_before = w_.texture_tracker.missed_lines;
     w_.program->run(batch, w_.uniforms);
-    w_.texture_tracker.end_batch();
+    w_.tracker.end_batch();
     PassCounters& n = w_.counters();
     account_shading(batch, *w_.program, sample_rate, n);
-    n.tex.touched_lines += w_.texture_tracker.missed_lines - lines_before;
   }
 
   /// add_heat for a tile in place: lanes of the tile are lanes of the heat image.

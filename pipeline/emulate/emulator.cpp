@@ -4,7 +4,6 @@
 #include <chrono>
 #include <ctime>
 #include <memory>
-#include <set>
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/depth/depth_format.h"
@@ -20,6 +19,7 @@ namespace {
 constexpr std::uint64_t kSegmentTriangles =
     262144;  // bounds memory: about 150 bytes a triangle that is drawn
 constexpr std::uint64_t kFullScreenBands = 64;
+constexpr int kReuseShiftMax = 5;  // 1 block in 32: the sampling error is in docs/hardware_model.md
 
 /// Runs the passes of one compiled graph in order. Images live from their first pass to their last.
 class FrameRunner {
@@ -218,20 +218,54 @@ class FrameRunner {
     }
   }
 
-  void start_workers(std::size_t chunk_count, PassContext& c) {
+  void start_workers(const Pass& pass, std::size_t chunk_count, PassContext& c) {
     c.chunk_count = chunk_count;
+    c.resources.image_first_line = image_lines(pass);
+    const BlockKinds kinds = block_kinds(pass, c);
     for (BinWorker& worker : workers_) {
       worker.chunks.assign(chunk_count, PassCounters{});
-      worker.used_lines.assign(textures_.line_count() / 64 + 1, 0);
-      worker.texture_tracker.used_lines = &worker.used_lines;
-      worker.texture_tracker.missed_lines = 0;
+      worker.tracker.start_pass(kinds, !pass.storage.empty());
       worker.resources = c.resources;
-      if (c.pass->storage.empty()) continue;
-      worker.storage_tracker.start();
-      worker.resources.tracker = &worker.storage_tracker;
+      worker.resources.tracker = &worker.tracker;
     }
     for (GpuImage* target : c.color) std::fill(target->touched_chunk.begin(), target->touched_chunk.end(), 0);
     if (c.depth != nullptr) std::fill(c.depth->touched_chunk.begin(), c.depth->touched_chunk.end(), 0);
+  }
+
+  /// Lines of sampled images are numbered behind those of all textures.
+  std::array<std::uint32_t, kMaxImageSlots> image_lines(const Pass& pass) const {
+    std::array<std::uint32_t, kMaxImageSlots> first{};
+    std::uint64_t next = textures_.line_count();
+    for (std::size_t i = 0; i < pass.sampled.size(); ++i) {
+      first[i] = static_cast<std::uint32_t>(next);
+      next += allocated_bytes(graph_.image(pass.sampled[i])) / kLineBytes + kBlockLanes;
+    }
+    return first;
+  }
+
+  BlockKinds block_kinds(const Pass& pass, const PassContext& c) const {
+    const int shift_max = options_.exact_reuse ? 0 : kReuseShiftMax;
+    BlockKinds kinds;
+    std::uint64_t lines = pass.kind == PassKind::draw ? textures_.line_count() : 0, stored = 0, tiles = 0;
+    for (const ImageId id : pass.sampled) lines += allocated_bytes(graph_.image(id)) / kLineBytes;
+    for (const BufferId id : pass.storage) stored += allocated_bytes(graph_.buffer(id)) / kLineBytes;
+    for (const ImageId id : pass.targets) stored += allocated_bytes(graph_.image(id)) / kLineBytes;
+    for (const GpuImage* target : c.color) {
+      tiles += target->touched_chunk.size();
+      const auto bytes =
+          static_cast<std::uint32_t>(kBlockLanes * target->samples * info(target->format).bytes);
+      kinds[at(ReuseStream::color)].bytes = std::max(kinds[at(ReuseStream::color)].bytes, bytes);
+    }
+    kinds[at(ReuseStream::texture)].shift = sample_shift(lines, shift_max);
+    kinds[at(ReuseStream::storage)].shift = sample_shift(stored, shift_max);
+    kinds[at(ReuseStream::geometry)].shift = shift_max;
+    kinds[at(ReuseStream::color)].whole = kinds[at(ReuseStream::depth)].whole = false;
+    kinds[at(ReuseStream::color)].shift = sample_shift(tiles, shift_max);
+    if (c.depth == nullptr) return kinds;
+    kinds[at(ReuseStream::depth)].bytes =
+        static_cast<std::uint32_t>(kBlockLanes * c.depth->samples * c.depth_bytes);
+    kinds[at(ReuseStream::depth)].shift = sample_shift(c.depth->touched_chunk.size(), shift_max);
+    return kinds;
   }
 
   void save_depth(GpuImage& depth) {
@@ -245,34 +279,43 @@ class FrameRunner {
     work.chunks.assign(workers_.front().chunks.size(), PassCounters{});
     for (const BinWorker& worker : workers_)
       for (std::size_t i = 0; i < work.chunks.size(); ++i) work.chunks[i] += worker.chunks[i];
-    std::uint64_t first_lines = 0;
-    for (std::size_t i = 0; i < workers_.front().used_lines.size(); ++i) {
-      std::uint64_t used = 0;
-      for (const BinWorker& worker : workers_) used |= worker.used_lines[i];
-      first_lines += static_cast<std::uint64_t>(__builtin_popcountll(used));
-    }
-    std::uint64_t image_lines = 0;
-    for (const ImageId id : pass.sampled) image_lines += allocated_bytes(graph_.image(id)) / 64;
     for (PassCounters& n : work.chunks) {
-      const std::uint64_t loaded_lines = (n.mem.texture_read_bytes + 63) / 64;
-      const std::uint64_t first_of_textures = std::min(first_lines, n.tex.touched_lines);
-      const std::uint64_t first_of_images = std::min(image_lines, loaded_lines);
-      first_lines -= first_of_textures;
-      image_lines -= first_of_images;
-      n.tex.touched_lines += loaded_lines;
-      n.tex.first_touched_lines += first_of_textures + first_of_images;
       n.tex.texels += 4 * n.tex.bilinear_probes;
       n.mem.texture_read_bytes += 16 * n.tex.bilinear_probes;
     }
-    work.unique_storage_bytes = unique_storage(pass, work);
+    work.reuse = merge_reuse(work);
     if (!pass.storage.empty()) share_same_address(work);
+  }
+
+  // Requests of tiles are those of the sample: their ratio varies less than either. Those of lines are known.
+  ReuseProfile merge_reuse(const PassWork& work) {
+    std::vector<std::vector<BlockAccess>> accesses;
+    std::array<std::uint64_t, kCacheSizes + 1> l1_missing{};
+    for (BinWorker& worker : workers_) {
+      accesses.push_back(std::move(worker.tracker.accesses));
+      for (std::size_t i = 0; i < l1_missing.size(); ++i) l1_missing[i] += worker.tracker.l1_missing[i];
+    }
+    ReuseProfile profile = make_reuse_profile(std::move(accesses), workers_.front().tracker.kinds, l1_missing,
+                                              options_.exact_reuse);
+    const MemCounters mem = total(work).mem;
+    const auto request = [&profile](ReuseStream stream, std::uint64_t read, std::uint64_t write) {
+      for (MissCurve* curve : {&profile.shared[at(stream)], &profile.apart[at(stream)]}) {
+        curve->requested_read_bytes = read;
+        curve->requested_write_bytes = write;
+      }
+    };
+    request(ReuseStream::texture, mem.texture_read_bytes, 0);
+    request(ReuseStream::storage, mem.storage_read_bytes, mem.storage_write_bytes);
+    request(ReuseStream::geometry, mem.vertex_read_bytes + mem.index_read_bytes, 0);
+    profile.texture_l1.requested_read_bytes = mem.texture_read_bytes;
+    return profile;
   }
 
   // Chunks share the most frequent address in proportion to their atomics.
   void share_same_address(PassWork& work) const {
-    std::vector<std::uint64_t> sums(StorageTracker::kSlots, 0);
+    std::vector<std::uint64_t> sums(AccessTracker::kAtomicSlots, 0);
     for (const BinWorker& worker : workers_)
-      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += worker.storage_tracker.atomics[i];
+      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += worker.tracker.atomics[i];
     const std::uint64_t hottest = *std::max_element(sums.begin(), sums.end());
     const std::uint64_t all = total(work).shader.atomic_lane_ops;
     if (all == 0) return;
@@ -287,16 +330,6 @@ class FrameRunner {
     return static_cast<std::uint64_t>(static_cast<__uint128_t>(std::min(value, whole)) * part / whole);
   }
 
-  // Buffers and stored images, or as much of them as was touched at most.
-  std::uint64_t unique_storage(const Pass& pass, const PassWork& work) const {
-    const PassCounters sum = total(work);
-    std::uint64_t bytes = 0;
-    for (const BufferId id : pass.storage) bytes += allocated_bytes(graph_.buffer(id));
-    if (pass.kind == PassKind::compute)
-      for (const ImageId id : pass.targets) bytes += allocated_bytes(graph_.image(id));
-    return std::min(bytes, sum.mem.storage_read_bytes + sum.mem.storage_write_bytes);
-  }
-
   void run_draw(const Pass& pass, PassWork& work) {
     PassContext c = make_context(pass);
     c.draws = materials_.make_draws(pass, graph_.scene());
@@ -306,9 +339,10 @@ class FrameRunner {
       triangles += draw.primitive_count();
     }
     c.chunk_primitives = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(triangles / 256, 32, 4096));
-    start_workers(std::max<std::uint64_t>(1, (triangles + c.chunk_primitives - 1) / c.chunk_primitives), c);
+    start_workers(pass, std::max<std::uint64_t>(1, (triangles + c.chunk_primitives - 1) / c.chunk_primitives),
+                  c);
     count_commands(pass, c, work.barrier_before, workers_.front().chunks);
-    count_inputs(c, workers_.front().chunks, work);
+    count_inputs(c, workers_.front().chunks);
     const GeometryOptions geometry{options_.jobs, functional_.post_transform_cache_entries,
                                    options_.skip.frustum};
     std::uint32_t first = 0;
@@ -343,18 +377,12 @@ class FrameRunner {
     }
   }
 
-  static void count_inputs(const PassContext& c, std::vector<PassCounters>& chunks, PassWork& work) {
-    std::set<const Mesh::Part*> parts;
+  static void count_inputs(const PassContext& c, std::vector<PassCounters>& chunks) {
     for (const DrawInfo& draw : c.draws) {
       const std::size_t chunk =
           std::min<std::size_t>(draw.first_primitive / c.chunk_primitives, chunks.size() - 1);
       // Transforms and material, as a driver would bind them.
       chunks[chunk].mem.constant_read_bytes += 64 + 36 + sizeof(MaterialView);
-      if (!parts.insert(draw.part).second) continue;
-      work.unique_index_bytes += std::uint64_t{draw.part->index_count} *
-                                 static_cast<std::uint64_t>(std::max(2, draw.mesh->index_bytes));
-      work.unique_vertex_bytes +=
-          std::uint64_t{draw.vertex_count} * static_cast<std::uint64_t>(draw.mesh->vertex_bytes);
     }
   }
 
@@ -362,7 +390,7 @@ class FrameRunner {
     PassContext c = make_context(pass);
     const auto bins = static_cast<std::uint64_t>(c.bins_x) * static_cast<std::uint64_t>(c.bins_y);
     const std::uint64_t bands = std::min(bins, kFullScreenBands);
-    start_workers(bands, c);
+    start_workers(pass, bands, c);
     count_commands(pass, c, work.barrier_before, workers_.front().chunks);
     workers_.front().chunks[0].stats.input_assembly_vertices += 3;  // one triangle that covers the screen
     workers_.front().chunks[0].stats.vertex_shader_invocations += 3;
@@ -378,7 +406,7 @@ class FrameRunner {
     PassContext c = make_context(pass);
     const auto groups = static_cast<std::uint64_t>(pass.groups_x) * static_cast<std::uint64_t>(pass.groups_y);
     const std::uint64_t bands = std::min(groups, kFullScreenBands);
-    start_workers(bands, c);
+    start_workers(pass, bands, c);
     count_commands(pass, c, work.barrier_before, workers_.front().chunks);
     std::vector<std::vector<std::uint32_t>> memory(
         workers_.size(),
@@ -389,6 +417,7 @@ class FrameRunner {
       const auto w = static_cast<std::size_t>(worker);
       GroupBatch& batch = *batches[w];
       std::fill(memory[w].begin(), memory[w].end(), 0);
+      workers_[w].tracker.start_bin(static_cast<std::uint32_t>(group));
       batch.group_x = static_cast<int>(group) % pass.groups_x;
       batch.group_y = static_cast<int>(group) / pass.groups_x;
       batch.width = pass.compute->group_width;

@@ -43,6 +43,7 @@ inline constexpr std::array<SkipInfo, 4> kSkips = {{
 struct EmulationOptions {
   int jobs = 1;
   SkipSwitches skip;
+  bool exact_reuse = false;  ///< reuse distances of all blocks, not of a sample: slow, to know the error
   std::function<void(double done_ratio, const std::string& pass)> progress;  ///< optional
 };
 

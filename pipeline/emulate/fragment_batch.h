@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "hwsim/counters.h"
+#include "pipeline/emulate/access_tracker.h"
 #include "pipeline/emulate/gpu_image.h"
-#include "pipeline/emulate/storage_tracker.h"
 #include "pipeline/raster/sample_pattern.h"
 #include "pipeline/raster/triangle.h"
 #include "pipeline/shade/program.h"
@@ -42,7 +42,8 @@ struct ResourceView {
   std::array<GpuImage*, 2> targets{};  ///< compute passes: images to store to
   std::array<std::uint32_t*, kMaxBufferSlots> buffers{};
   std::array<std::uint64_t, kMaxBufferSlots> buffer_words{};
-  StorageTracker* tracker = nullptr;  ///< of the worker; null in passes without storage buffers
+  std::array<std::uint32_t, kMaxImageSlots> image_first_line{};  ///< after the lines of the textures
+  AccessTracker* tracker = nullptr;                              ///< of the worker
 };
 
 /// How often each lane went through each block of a shader (a loop's body: once for each iteration).
@@ -82,7 +83,6 @@ struct FragmentBatch {
 
   const MaterialView* material = nullptr;
   const ResourceView* resources = nullptr;
-  TextureTracker* texture_tracker = nullptr;
 
   // Results
   alignas(64) float color[kMaxColorTargets][4][kBatchLanes];

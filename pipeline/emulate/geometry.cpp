@@ -90,7 +90,7 @@ Segment make_segment(const PassContext& context, std::uint32_t first, std::uint3
 std::uint64_t run_geometry(const PassContext& context, Segment& segment, const GeometryOptions& options,
                            std::vector<BinWorker>& workers) {
   const std::uint64_t skipped = options.skip_frustum ? mark_outside(context, segment) : 0;
-  count_vertex_work(context, segment, options.cache_entries, workers[0].chunks);
+  count_vertex_work(context, segment, options.cache_entries, workers[0]);
   shade_vertices(context, segment, options.jobs);
   parallel_for(segment.items.size(), options.jobs, [&](std::size_t i, int worker) {
     GeometryItem& item = segment.items[i];

@@ -78,6 +78,7 @@ std::vector<DrawInfo> MaterialViews::make_draws(const Pass& pass, const Scene& s
       DrawInfo draw;
       draw.batch = &batch;
       draw.mesh = &scene.meshes[mesh];
+      draw.mesh_number = static_cast<std::uint32_t>(mesh);
       draw.part = &draw.mesh->parts[part];
       draw.material = &views_[static_cast<std::size_t>(draw.part->material)];
       draw.first_vertex = ranges_[mesh][part].first;

@@ -43,9 +43,7 @@ struct BinWorker {
   std::array<std::int32_t, kBatchQuads> sample_quad;  ///< of each quad of sample_batch: its number in `batch`
 
   ResourceView resources;  ///< of the pass, with the trackers of this worker
-  StorageTracker storage_tracker;
-  TextureTracker texture_tracker;
-  std::vector<std::uint64_t> used_lines;  ///< texture lines of the pass
+  AccessTracker tracker;
   std::vector<PassCounters> chunks;
   std::uint32_t current_chunk = 0;
   std::uint64_t accepted_tiles_skipped = 0;

@@ -17,6 +17,7 @@ inline constexpr int kBlocksPerBin = kBinPx / kBlockPx;
 struct DrawInfo {
   const DrawBatch* batch = nullptr;
   const Mesh* mesh = nullptr;
+  std::uint32_t mesh_number = 0;  ///< in the scene
   const Mesh::Part* part = nullptr;
   const MaterialView* material = nullptr;
   float world_from_local[16] = {};

@@ -110,21 +110,82 @@ std::vector<VertexTask> vertex_tasks(const PassContext& context, const Segment& 
   return tasks;
 }
 
+/// body(place of the index in the part, vertex) for each miss of a FIFO post-transform cache.
+template <class Body>
+void for_each_cache_miss(const Mesh& mesh, const Mesh::Part& part, int cache_entries, Body&& body) {
+  std::vector<std::uint64_t> loaded(mesh.positions.size(),
+                                    0);  // 1 + the miss by which the vertex came in last
+  std::uint64_t total = 0;
+  for (std::uint32_t i = 0; i < part.index_count; ++i) {
+    const std::uint32_t vertex = mesh.indices[part.first_index + i];
+    std::uint64_t& at = loaded[vertex];
+    if (at != 0 && total - at < static_cast<std::uint64_t>(cache_entries)) continue;
+    at = ++total;
+    body(i, vertex);
+  }
+}
+
+/// A read of a sampled line by a primitive of the part.
+struct LineRead {
+  std::uint32_t primitive, line, bytes;
+};
+
+struct PartFetch {
+  std::vector<std::uint32_t> misses;  ///< of each run of kItemPrimitives primitives
+  std::vector<LineRead> reads;        ///< by primitive
+};
+
+/// Vertices come whole, over one line or more; indices in order.
+PartFetch fetch_part(const DrawInfo& draw, std::uint32_t first_line, int cache_entries, int shift) {
+  const std::uint32_t per_primitive = draw.indices_per_primitive();
+  const auto vertex_bytes = static_cast<std::uint32_t>(draw.mesh->vertex_bytes);
+  PartFetch fetch;
+  fetch.misses.assign((draw.part->index_count / per_primitive + kItemPrimitives - 1) / kItemPrimitives + 1,
+                      0);
+  for_each_cache_miss(*draw.mesh, *draw.part, cache_entries, [&](std::uint32_t i, std::uint32_t vertex) {
+    fetch.misses[i / (per_primitive * kItemPrimitives)] += 1;
+    const std::uint64_t start = std::uint64_t{vertex} * vertex_bytes, end = start + vertex_bytes;
+    for (std::uint64_t line = start / kLineBytes; line * kLineBytes < end; ++line) {
+      const std::uint32_t number = first_line + static_cast<std::uint32_t>(line);
+      if (!is_sampled(number, shift)) continue;
+      const std::uint64_t from = std::max(start, line * kLineBytes),
+                          to = std::min(end, (line + 1) * kLineBytes);
+      fetch.reads.push_back({i / per_primitive, number, static_cast<std::uint32_t>(to - from)});
+    }
+  });
+  const auto index_bytes = static_cast<std::uint32_t>(std::max(2, draw.mesh->index_bytes));
+  const std::uint32_t in_line = kLineBytes / index_bytes;
+  for (std::uint32_t i = 0; i < draw.part->index_count; i += in_line) {
+    const std::uint32_t number = ~first_line - (draw.part->first_index + i) / in_line;
+    if (is_sampled(number, shift)) fetch.reads.push_back({i / per_primitive, number, kLineBytes});
+  }
+  std::stable_sort(fetch.reads.begin(), fetch.reads.end(),
+                   [](const LineRead& a, const LineRead& b) { return a.primitive < b.primitive; });
+  return fetch;
+}
+
+void track_reads(const DrawInfo& draw, const GeometryItem& item, const PartFetch& fetch,
+                 AccessTracker& tracker) {
+  const auto before = [](const LineRead& read, std::uint32_t primitive) {
+    return read.primitive < primitive;
+  };
+  auto read = std::lower_bound(fetch.reads.begin(), fetch.reads.end(), item.first_primitive, before);
+  tracker.start_bin(0);
+  for (; read != fetch.reads.end() && read->primitive < item.first_primitive + item.primitive_count; ++read) {
+    tracker.start_primitive(draw.first_primitive + read->primitive);
+    tracker.touch(ReuseStream::geometry, read->line, read->bytes, 0);
+  }
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> count_cache_misses(const Mesh& mesh, const Mesh::Part& part,
                                               std::uint32_t indices_per_primitive, int cache_entries) {
   const std::uint32_t primitives = part.index_count / indices_per_primitive;
   std::vector<std::uint32_t> misses((primitives + kItemPrimitives - 1) / kItemPrimitives + 1, 0);
-  std::vector<std::uint64_t> loaded(mesh.positions.size(),
-                                    0);  // 1 + the miss by which the vertex came in last
-  std::uint64_t total = 0;
-  for (std::uint32_t i = 0; i < part.index_count; ++i) {
-    std::uint64_t& at = loaded[mesh.indices[part.first_index + i]];
-    if (at != 0 && total - at < static_cast<std::uint64_t>(cache_entries)) continue;
-    at = ++total;
+  for_each_cache_miss(mesh, part, cache_entries, [&](std::uint32_t i, std::uint32_t) {
     misses[i / (indices_per_primitive * kItemPrimitives)] += 1;
-  }
+  });
   return misses;
 }
 
@@ -138,18 +199,21 @@ std::uint64_t mark_outside(const PassContext& context, Segment& segment) {
 }
 
 void count_vertex_work(const PassContext& context, const Segment& segment, int cache_entries,
-                       std::vector<PassCounters>& chunks) {
-  std::map<const Mesh::Part*, std::vector<std::uint32_t>> misses;  // instances share their mesh's parts
+                       BinWorker& worker) {
+  const int shift = worker.tracker.kinds[at(ReuseStream::geometry)].shift;
+  std::map<const Mesh::Part*, PartFetch> fetches;  // instances share their mesh's parts
   for (const GeometryItem& item : segment.items) {
     const DrawInfo& draw = context.draws[item.draw];
-    auto found = misses.find(draw.part);
-    if (found == misses.end())
-      found = misses
-                  .emplace(draw.part, count_cache_misses(*draw.mesh, *draw.part, draw.indices_per_primitive(),
-                                                         cache_entries))
-                  .first;
+    auto found = fetches.find(draw.part);
+    if (found == fetches.end()) {
+      // Meshes begin at places that a hash scatters: no list of their sizes is needed.
+      const std::uint32_t first_line = block_hash(2 * draw.mesh_number + 1) >> 1;
+      found = fetches.emplace(draw.part, fetch_part(draw, first_line, cache_entries, shift)).first;
+    }
     const std::uint32_t chunk = (draw.first_primitive + item.first_primitive) / context.chunk_primitives;
-    count_vertices(context, item, found->second[item.first_primitive / kItemPrimitives], chunks[chunk]);
+    count_vertices(context, item, found->second.misses[item.first_primitive / kItemPrimitives],
+                   worker.chunks[chunk]);
+    track_reads(draw, item, found->second, worker.tracker);
   }
 }
 

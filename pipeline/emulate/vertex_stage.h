@@ -13,7 +13,7 @@ std::uint64_t mark_outside(const PassContext& context, Segment& segment);
 
 /// Charges the chunks for fetching and shading, as the cache lets vertices through.
 void count_vertex_work(const PassContext& context, const Segment& segment, int cache_entries,
-                       std::vector<PassCounters>& chunks);
+                       BinWorker& worker);
 
 /// Shades every vertex of the segment's draws that are not outside, once.
 void shade_vertices(const PassContext& context, Segment& segment, int jobs);

@@ -15,19 +15,21 @@ namespace hwsim::pipeline::HWY_NAMESPACE {
 
 class BufferAccess {
  public:
-  BufferAccess(const ResourceView& resources, int slot)
+  BufferAccess(const ResourceView& resources, int slot, int first_lane)
       : words_(resources.buffers[static_cast<std::size_t>(slot)]),
         count_(resources.buffer_words[static_cast<std::size_t>(slot)]),
         tracker_(resources.tracker),
-        slot_(slot) {}
+        slot_(slot),
+        first_lane_(first_lane) {}
 
   LaneI load_words(LaneI index, LaneM mask) const {
     HWY_ALIGN std::int32_t at[kVectorLanes], out[kVectorLanes] = {};
     store(index, at);
     for (std::uint32_t bits = mask_bits(mask); bits != 0; bits &= bits - 1) {
       const int lane = __builtin_ctz(bits);
-      if (holds(at[lane]))
-        out[lane] = static_cast<std::int32_t>(__atomic_load_n(words_ + at[lane], __ATOMIC_RELAXED));
+      if (!holds(at[lane])) continue;
+      out[lane] = static_cast<std::int32_t>(__atomic_load_n(words_ + at[lane], __ATOMIC_RELAXED));
+      note(lane, at[lane], 4, 0);
     }
     return load(out);
   }
@@ -38,8 +40,9 @@ class BufferAccess {
     store(value, from);
     for (std::uint32_t bits = mask_bits(mask); bits != 0; bits &= bits - 1) {
       const int lane = __builtin_ctz(bits);
-      if (holds(at[lane]))
-        __atomic_store_n(words_ + at[lane], static_cast<std::uint32_t>(from[lane]), __ATOMIC_RELAXED);
+      if (!holds(at[lane])) continue;
+      __atomic_store_n(words_ + at[lane], static_cast<std::uint32_t>(from[lane]), __ATOMIC_RELAXED);
+      note(lane, at[lane], 0, 4);
     }
   }
 
@@ -53,7 +56,8 @@ class BufferAccess {
       if (!holds(at[lane])) continue;
       out[lane] = static_cast<std::int32_t>(
           __atomic_fetch_add(words_ + at[lane], static_cast<std::uint32_t>(from[lane]), __ATOMIC_RELAXED));
-      if (tracker_ != nullptr) tracker_->count_atomic(slot_, at[lane]);
+      note(lane, at[lane], 4, 4);
+      tracker_->count_atomic(slot_, at[lane]);
     }
     return load(out);
   }
@@ -63,8 +67,13 @@ class BufferAccess {
 
   std::uint32_t* words_;
   std::uint64_t count_;
-  StorageTracker* tracker_;
-  int slot_;
+  void note(int lane, std::int32_t index, std::uint32_t read, std::uint32_t write) const {
+    tracker_->use_if_sampled((first_lane_ + lane) / 4, ReuseStream::storage,
+                             buffer_line(slot_, static_cast<std::uint32_t>(index)), read, write);
+  }
+
+  AccessTracker* tracker_;
+  int slot_, first_lane_;
 };
 
 /// Bytes of one word for each lane of a mask.

@@ -35,23 +35,24 @@ class ComputeLanes {
     texels.add(lanes, info(image.format).bytes);
     charge_texels(texels, *group_.counters);
     group_.counters->mem.texture_read_bytes += lanes * info(image.format).bytes;
+    track_texels(*group_.resources, slot, x, y, sample, mask_bits(live_), first_);
     return load_texel(image, x, y, sample);
   }
 
   /// Word `index` of the pass's storage buffer, lanes of `mask` only (others 0).
   I load_buffer(int slot, I index, M mask) {
     group_.counters->mem.storage_read_bytes += word_bytes(mask & valid_);
-    return BufferAccess(*group_.resources, slot).load_words(index, mask & valid_);
+    return BufferAccess(*group_.resources, slot, first_).load_words(index, mask & valid_);
   }
   void store_buffer(int slot, I index, I value, M mask) {
     group_.counters->mem.storage_write_bytes += word_bytes(mask & valid_);
-    BufferAccess(*group_.resources, slot).store_words(index, value, mask & valid_);
+    BufferAccess(*group_.resources, slot, first_).store_words(index, value, mask & valid_);
   }
   /// Atomic integer add; the words before it.
   I atomic_add(int slot, I index, I value, M mask) {
     group_.counters->mem.storage_read_bytes += word_bytes(mask & valid_);
     group_.counters->mem.storage_write_bytes += word_bytes(mask & valid_);
-    return BufferAccess(*group_.resources, slot).add_words(index, value, mask & valid_);
+    return BufferAccess(*group_.resources, slot, first_).add_words(index, value, mask & valid_);
   }
 
   /// Writes texel (x, y) of the pass's target, lanes of `mask` only; coordinates are inside the image.
@@ -70,6 +71,7 @@ class ComputeLanes {
       for (int w = 0; w < image.words; ++w)
         image.texels[image.word_index(px[lane], py[lane], ps[lane], w)] =
             static_cast<std::uint32_t>(words[w][lane]);
+      note_store(image, target, lane, image.word_index(px[lane], py[lane], ps[lane], 0));
     }
     group_.counters->mem.storage_write_bytes +=
         static_cast<std::uint64_t>(__builtin_popcount(bits)) * info(image.format).bytes;
@@ -107,6 +109,18 @@ class ComputeLanes {
   std::size_t loop_count(int count) const { return static_cast<std::size_t>(count); }
 
  private:
+  /// Images that are stored to are numbered behind the buffers; a sample's tile is as many lines as a texel
+  /// has bytes.
+  void note_store(const GpuImage& image, int target, int lane, std::size_t first_word) const {
+    const auto bytes = static_cast<std::uint32_t>(info(image.format).bytes);
+    const auto texel = static_cast<std::uint32_t>(first_word % kBlockLanes);
+    const auto tile =
+        static_cast<std::uint32_t>(first_word / kBlockLanes / static_cast<std::size_t>(image.words));
+    group_.resources->tracker->use_if_sampled(
+        (first_ + lane) / 4, ReuseStream::storage,
+        buffer_line(kMaxBufferSlots + target, 0) + tile * bytes + texel * bytes / kLineBytes, 0, bytes);
+  }
+
   GroupBatch& group_;
   int first_;
   I x_, y_, sample_;
@@ -119,6 +133,7 @@ inline void end_wave(GroupBatch& group, int lanes) {
   const std::uint64_t valid = lanes == kBatchLanes ? ~std::uint64_t{0} : (std::uint64_t{1} << lanes) - 1;
   account_blocks(group.blocks, group.program->ops, group.program->block_count, valid, *group.counters);
   group.blocks.used = 0;
+  group.resources->tracker->end_batch();
 }
 
 }  // namespace hwsim::pipeline::HWY_NAMESPACE

@@ -44,6 +44,25 @@ HWY_INLINE Vec4<LaneF> load_texel(const GpuImage& image, LaneI x, LaneI y, LaneI
   return decode_texel<LaneF, LaneI>(image.format, words, srgb_decode_table().data());
 }
 
+/// Notes the lines of texels of the pass's image slot, as load_texel reads them: a line is a rectangle of a
+/// tile's pixels at one sample.
+HWY_INLINE void track_texels(const ResourceView& resources, int slot, LaneI x, LaneI y, LaneI sample,
+                             std::uint32_t lanes, int first_lane) {
+  if (resources.tracker == nullptr || lanes == 0) return;
+  const GpuImage& image = *resources.images[static_cast<std::size_t>(slot)];
+  const LaneI cx = min(max(x, LaneI(0)), LaneI(image.width - 1)),
+              cy = min(max(y, LaneI(0)), LaneI(image.height - 1));
+  const LaneI block = shift_right<3>(cy) * LaneI(image.blocks_x) + shift_right<3>(cx);
+  const LaneI lane = (cx & LaneI(1)) | shift_left<1>(cy & LaneI(1)) | shift_left<1>(cx & LaneI(2)) |
+                     shift_left<2>(cy & LaneI(2)) | shift_left<2>(cx & LaneI(4)) |
+                     shift_left<3>(cy & LaneI(4));
+  const std::int32_t bytes = info(image.format).bytes;  // 64 texels of it are as many lines
+  const LaneI line =
+      LaneI(static_cast<std::int32_t>(resources.image_first_line[static_cast<std::size_t>(slot)])) +
+      (block * LaneI(image.samples) + sample) * LaneI(bytes) + shift_right<6>(lane * LaneI(bytes));
+  track_lines(*resources.tracker, line, lanes, first_lane, static_cast<std::uint32_t>(bytes));
+}
+
 class FragmentLanes {
  public:
   using F = LaneF;
@@ -89,7 +108,7 @@ class FragmentLanes {
 
   /// Filtered texture at attribute scalars (k, k + 1); level of detail from the derivatives at pixel centers.
   Vec4<F> sample_texture(const TextureView* texture, int k) {
-    const TextureSampler<F, I, M> sampler(*texture, batch_.texture_tracker, live_, first_);
+    const TextureSampler<F, I, M> sampler(*texture, batch_.resources->tracker, live_, first_);
     const F uc = interpolate(k, batch_.b1_center.data(), batch_.b2_center.data());
     const F vc = interpolate(k + 1, batch_.b1_center.data(), batch_.b2_center.data());
     return sampler.sample(attr(k), attr(k + 1), ddx(uc), ddx(vc), ddy(uc), ddy(vc),
@@ -102,22 +121,23 @@ class FragmentLanes {
     const auto lanes = static_cast<std::uint64_t>(__builtin_popcount(mask_bits(live_)));
     batch_.image_texels.add(lanes, info(image.format).bytes);
     batch_.image_read_bytes += lanes * info(image.format).bytes;
+    track_texels(*batch_.resources, slot, x, y, sample, mask_bits(live_), first_);
     return load_texel(image, x, y, sample);
   }
   /// Word `index` of the pass's storage buffer, lanes of `mask` only (others 0).
   I load_buffer(int slot, I index, M mask) {
     batch_.storage_read_bytes += word_bytes(mask & valid_);
-    return BufferAccess(*batch_.resources, slot).load_words(index, mask & valid_);
+    return BufferAccess(*batch_.resources, slot, first_).load_words(index, mask & valid_);
   }
   void store_buffer(int slot, I index, I value, M mask) {
     batch_.storage_write_bytes += word_bytes(mask & active_);
-    BufferAccess(*batch_.resources, slot).store_words(index, value, mask & active_);
+    BufferAccess(*batch_.resources, slot, first_).store_words(index, value, mask & active_);
   }
   /// Atomic integer add; the words before it.
   I atomic_add(int slot, I index, I value, M mask) {
     batch_.storage_read_bytes += word_bytes(mask & active_);
     batch_.storage_write_bytes += word_bytes(mask & active_);
-    return BufferAccess(*batch_.resources, slot).add_words(index, value, mask & active_);
+    return BufferAccess(*batch_.resources, slot, first_).add_words(index, value, mask & active_);
   }
 
   int image_width(int slot) const { return batch_.resources->images[static_cast<std::size_t>(slot)]->width; }

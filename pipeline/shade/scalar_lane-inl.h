@@ -51,7 +51,9 @@ inline ScalarF select(ScalarM m, ScalarF a, ScalarF b) { return m.v ? a : b; }
 inline ScalarI select(ScalarM m, ScalarI a, ScalarI b) { return m.v ? a : b; }
 inline ScalarI operator+(ScalarI a, ScalarI b) { return a.v + b.v; }
 inline ScalarI operator-(ScalarI a, ScalarI b) { return a.v - b.v; }
-inline ScalarI operator*(ScalarI a, ScalarI b) { return a.v * b.v; }
+inline ScalarI operator*(ScalarI a, ScalarI b) {  // wraps, as the lanes do
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a.v) * static_cast<std::uint32_t>(b.v));
+}
 inline ScalarI operator&(ScalarI a, ScalarI b) { return a.v & b.v; }
 inline ScalarI operator|(ScalarI a, ScalarI b) { return a.v | b.v; }
 inline ScalarI operator^(ScalarI a, ScalarI b) { return a.v ^ b.v; }

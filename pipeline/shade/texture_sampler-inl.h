@@ -3,6 +3,7 @@
 #include <hwy/highway.h>
 #include <bit>
 #include <cstdint>
+#include "pipeline/emulate/access_tracker.h"
 #include "pipeline/shade/texture_view.h"
 #include "pipeline/shade/transcendental-inl.h"
 #include "pipeline/shade/vec-inl.h"
@@ -16,6 +17,27 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
+/// block_hash of hwsim/reuse.h, in every lane.
+template <class I>
+HWY_INLINE I line_hash(I line) {
+  I h = line * I(static_cast<std::int32_t>(0x9e3779b1u));
+  h = h ^ (shift_right<15>(h) & I(0x1ffff));
+  return h * I(static_cast<std::int32_t>(0x85ebca77u));
+}
+
+/// Notes the lanes whose line belongs to the sample: most registers hold none.
+template <class I>
+HWY_INLINE void track_lines(AccessTracker& tracker, I line, std::uint32_t lanes, int first_lane,
+                            std::uint32_t bytes) {
+  const int shift = tracker.kinds[at(ReuseStream::texture)].shift;
+  const I high(static_cast<std::int32_t>(~(0xffffffffu >> shift)));
+  const std::uint32_t sampled = mask_bits((line_hash(line) & high) == I(0)) & lanes;
+  if (sampled == 0) return;
+  for_each_lane(line, sampled, [&](int lane, std::int32_t number) HWY_ATTR {
+    tracker.use((first_lane + lane) / 4, ReuseStream::texture, static_cast<std::uint32_t>(number), bytes, 0);
+  });
+}
+
 /// Samples one texture for the lanes of `valid` (helpers included: they fetch too). A lane fetches what it
 /// needs itself, not what its neighbors in a register need: otherwise counts would depend on the register's
 /// width.
@@ -23,7 +45,7 @@ template <class F, class I, class M>
 class TextureSampler {
  public:
   /// `first_lane`: of the register within its batch.
-  TextureSampler(const TextureView& texture, TextureTracker* tracker, M valid, int first_lane = 0)
+  TextureSampler(const TextureView& texture, AccessTracker* tracker, M valid, int first_lane = 0)
       : texture_(texture), tracker_(tracker), valid_(valid), first_lane_(first_lane) {}
 
   /// u, v with their derivatives for one pixel to the right and down. Adds probes beyond one a lane to
@@ -147,7 +169,10 @@ class TextureSampler {
     const I tile = shift_right<2>(yi) * tiles_x + shift_right<2>(xi);
     const I index = first + shift_left<4>(tile) + shift_left<2>(yi & I(3)) + (xi & I(3));
     const I safe = select(lanes, index, I(0));
-    track(safe, mask_bits(lanes));
+    if (tracker_ != nullptr) {
+      const I line = shift_right<4>(safe) + I(static_cast<std::int32_t>(texture_.first_line));
+      track_lines(*tracker_, line, mask_bits(lanes), first_lane_, 4);
+    }
     const I code = gather(reinterpret_cast<const std::int32_t*>(texture_.texels), safe);
     return border(decode(code), x, y, w, h);
   }
@@ -171,16 +196,8 @@ class TextureSampler {
             select(outside, F(s.border_color.z), c.z), select(outside, F(s.border_color.w), c.w)};
   }
 
-  void track(I index, std::uint32_t lanes) const {
-    if (tracker_ == nullptr) return;
-    for_each_lane(index, lanes, [&](int lane, std::int32_t texel) HWY_ATTR {
-      tracker_->use((first_lane_ + lane) / 4,
-                    texture_.first_line + static_cast<std::uint32_t>(texel) / kTexelsPerLine);
-    });
-  }
-
   const TextureView& texture_;
-  TextureTracker* tracker_;
+  AccessTracker* tracker_;
   M valid_;
   int first_lane_;
 };

@@ -66,11 +66,9 @@ inline std::string difference(const pipeline::Image& a, const pipeline::Image& b
 }
 
 inline std::string difference(const PassWork& a, const PassWork& b) {
-  const bool described =
-      a.name == b.name && a.kind == b.kind && a.width_px == b.width_px && a.height_px == b.height_px &&
-      a.barrier_before == b.barrier_before && a.unique_vertex_bytes == b.unique_vertex_bytes &&
-      a.unique_index_bytes == b.unique_index_bytes && a.unique_storage_bytes == b.unique_storage_bytes &&
-      a.chunks.size() == b.chunks.size();
+  const bool described = a.name == b.name && a.kind == b.kind && a.width_px == b.width_px &&
+                         a.height_px == b.height_px && a.barrier_before == b.barrier_before &&
+                         a.reuse == b.reuse && a.chunks.size() == b.chunks.size();
   if (!described) return "pass " + a.name + ": descriptions differ";
   for (std::size_t chunk = 0; chunk < a.chunks.size(); ++chunk) {
     const auto left = values(a.chunks[chunk]), right = values(b.chunks[chunk]);

@@ -44,8 +44,7 @@ inline PassWork random_pass(const std::string& name, PassKind kind, Numbers& num
     c.shader.load_lane_ops = numbers.count(1e3, 1e6);
     c.tex.requests = c.tex.bilinear_probes = numbers.count(1e4, 1e6 * tilt + 2e4);
     c.tex.texels = c.tex.requests * 4;
-    c.tex.touched_lines = c.tex.first_touched_lines = numbers.count(1e3, 4e5 * tilt + 2e3);
-    c.mem.texture_read_bytes = c.tex.texels * 4;
+    c.mem.texture_read_bytes = 64 * numbers.count(1e3, 4e5 * tilt + 2e3);  // without reuse: all of them move
     pass.chunks.push_back(c);
   }
   return pass;

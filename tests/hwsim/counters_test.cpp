@@ -89,7 +89,6 @@ PassCounters lawful() {
   c.crop.written_samples = 30;
   c.crop.blended_samples = 30;
   c.tex.texels = 64;
-  c.tex.first_touched_lines = 4;
   return c;
 }
 
@@ -116,7 +115,6 @@ TEST(Conservation, LawfulCountersPassAndEachBrokenLawIsFoundAlone) {
       {"blended", [](PassCounters& c) { c.crop.blended_samples = 31; }},
       {"zrop.first_touched", [](PassCounters& c) { c.zrop.first_touched_tiles = 9; }},
       {"crop.first_touched", [](PassCounters& c) { c.crop.first_touched_tiles = 9; }},
-      {"tex.first_touched", [](PassCounters& c) { c.tex.first_touched_lines = 65; }},
   };
   for (const auto& [law, damage] : cases) {
     PassCounters c = lawful();

@@ -86,9 +86,8 @@ std::vector<PassWork> single_path_passes() {
         c.stats.fragment_shader_invocations = c.shader.memory_chain_lane_ops = 9'999'999;
         c.shader.register_lanes = 9'999'999 * std::uint64_t{200};
         c.tex.requests = 9999;
-        c.tex.texels = 9'999, c.tex.touched_lines = 100, c.tex.first_touched_lines = 20;
       }),
-      pass_of([](PassCounters& c) { c.tex.touched_lines = 999, c.tex.texels = 99'999; }),
+      pass_of([](PassCounters& c) { c.mem.texture_read_bytes = 99'999; }),
       pass_of([](PassCounters& c) { c.resolve.read_samples = 999; }),
       pass_of([](PassCounters& c) { c.crop.exported_fragments = 9, c.crop.written_samples = 72; },
               Format::rgba8_unorm, 8),
@@ -107,12 +106,23 @@ std::vector<PassWork> single_path_passes() {
   for (PassCounters& c : memory.chunks) {
     PassCounters only;
     only.mem = c.mem;
-    only.tex = c.tex;
-    only.tex.bilinear_probes = 0;
-    only.crop.touched_tiles = only.zrop.touched_tiles = 90;
-    only.crop.first_touched_tiles = only.zrop.first_touched_tiles = 10;  // the rest can hit
     c = only;
   }
+  PassWork textures = memory;
+  for (PassCounters& c : textures.chunks) {
+    PassCounters only;
+    only.mem.texture_read_bytes = 999'999;
+    c = only;
+  }
+  set_reuse(textures, 0.2);
+  passes.push_back(textures);
+  PassWork waiting = textures;
+  for (PassCounters& c : waiting.chunks) {
+    c.stats.fragment_shader_invocations = c.shader.memory_chain_lane_ops = 9'999'999;
+    c.shader.register_lanes = 9'999'999 * std::uint64_t{200};
+    c.tex.requests = 9'999'999;
+  }
+  passes.push_back(waiting);
   passes.push_back(memory);
   return passes;
 }

@@ -72,6 +72,36 @@ inline FrameTiming time_one(const PassWork& pass, const GpuConfig& gpu, Engine e
   return time_frame(trace, gpu, engine);
 }
 
+/// Every doubling of a cache keeps as much of what can be kept; the largest lets `compulsory_ratio` through.
+inline MissCurve even_curve(std::uint64_t read, std::uint64_t write, double compulsory_ratio) {
+  MissCurve curve;
+  curve.requested_read_bytes = read;
+  curve.requested_write_bytes = write;
+  for (std::size_t k = 0; k < kCacheSizes; ++k) {
+    const double kept = static_cast<double>(k) / (kCacheSizes - 1);
+    const double moved = 1.0 - kept * (1.0 - compulsory_ratio);
+    curve.read_bytes[k] = static_cast<std::uint64_t>(moved * static_cast<double>(read));
+    curve.first_read_bytes[k] = static_cast<std::uint64_t>(compulsory_ratio * static_cast<double>(read));
+    curve.write_bytes[k] = static_cast<std::uint64_t>(moved * static_cast<double>(write));
+  }
+  return curve;
+}
+
+/// Reuse of all streams of a pass whose chunks are there.
+inline void set_reuse(PassWork& pass, double compulsory_ratio) {
+  const MemCounters mem = total(pass).mem;
+  auto& of = pass.reuse.shared;
+  of[at(ReuseStream::color)] = even_curve(mem.color_read_bytes, mem.color_write_bytes, compulsory_ratio);
+  of[at(ReuseStream::depth)] = even_curve(mem.depth_read_bytes, mem.depth_write_bytes, compulsory_ratio);
+  of[at(ReuseStream::texture)] = even_curve(mem.texture_read_bytes, 0, compulsory_ratio);
+  of[at(ReuseStream::storage)] =
+      even_curve(mem.storage_read_bytes, mem.storage_write_bytes, compulsory_ratio);
+  of[at(ReuseStream::geometry)] =
+      even_curve(mem.vertex_read_bytes + mem.index_read_bytes, 0, compulsory_ratio);
+  pass.reuse.apart = of;
+  pass.reuse.texture_l1 = of[at(ReuseStream::texture)];
+}
+
 /// A pass that gives every unit something to do.
 inline PassWork busy_pass(std::size_t chunks) {
   PassWork pass;
@@ -81,9 +111,6 @@ inline PassWork busy_pass(std::size_t chunks) {
   pass.depth_format = Format::d32_float;
   pass.depth_samples = 4;
   pass.color_targets = {{Format::rgba8_unorm, 4, true}, {Format::rgba16_float, 4, false}};
-  pass.unique_vertex_bytes = 200'000;
-  pass.unique_index_bytes = 50'000;
-  pass.unique_storage_bytes = 100'000;
   for (std::size_t k = 0; k < chunks; ++k) {
     PassCounters c;
     std::uint64_t n = 100 + 37 * (k % 11);
@@ -93,12 +120,11 @@ inline PassWork busy_pass(std::size_t chunks) {
     c.mem.vertex_read_bytes = 9'000;
     c.crop.touched_tiles = c.zrop.touched_tiles = 90;
     c.crop.first_touched_tiles = c.zrop.first_touched_tiles = 40;
-    c.tex.touched_lines = 400;
-    c.tex.first_touched_lines = 200;
     c.tex.texels = 4000;
     c.mem.texture_read_bytes = 4000 * 12;
     pass.chunks.push_back(c);
   }
+  set_reuse(pass, 0.2);
   return pass;
 }
 

@@ -142,13 +142,12 @@ TEST(Shader, InterpolationAddsToThePipeThatRunsIt) {
   EXPECT_NEAR(time_one(repeated(PassKind::full_screen, c, 64), gpu).time_ns, 64 * 3.0, 1e-9);
 }
 
-PassWork color_write_pass(std::uint64_t first_tiles, std::uint64_t tiles) {
+PassWork color_write_pass(double compulsory_ratio) {
   PassCounters c;
-  c.crop.touched_tiles = tiles;
-  c.crop.first_touched_tiles = first_tiles;
-  c.mem.color_write_bytes = tiles * 256;
+  c.mem.color_write_bytes = 25'600;
   PassWork pass = repeated(PassKind::draw, c, 100);
   pass.color_targets = {{Format::rgba8_unorm, 1, false}};
+  set_reuse(pass, compulsory_ratio);
   return pass;
 }
 
@@ -157,44 +156,58 @@ TEST(Dram, LimitedPassReachesPeakTimesEfficiency) {
   gpu.dram_bandwidth_gb_s = 100.0;
   gpu.dram_efficiency_ratio = 0.8;
   gpu.dram_cpu_share_ratio = 0.25;
-  const FrameTiming t = time_one(color_write_pass(100, 100), gpu);
-  EXPECT_NEAR(t.time_ns / (100 * 100 * 256 / 60.0), 1.0, 0.01);
+  const FrameTiming t = time_one(color_write_pass(1.0), gpu);
+  EXPECT_NEAR(t.time_ns / (100 * 25'600 / 60.0), 1.0, 0.01);
   EXPECT_EQ(t.passes[0].limiter, Unit::dram);
-  EXPECT_DOUBLE_EQ(t.dram_bytes.total_write(), 100 * 100 * 256.0);
+  EXPECT_DOUBLE_EQ(t.dram_bytes.total_write(), 100 * 25'600.0);
 }
 
-TEST(Dram, SecondTouchesMissByThePartOfTheFootprintThatDoesNotFit) {
+TEST(Dram, MovesWhatTheCacheOfTheStreamLetsThrough) {
+  // 17 doublings from 1 KiB to 128 MiB, each keeps 1 / 17 of the 0.8 that can be kept.
+  const auto moved = [](GpuConfig gpu) {
+    return time_one(color_write_pass(0.2), gpu).dram_bytes.total_write() / (100 * 25'600.0);
+  };
   GpuConfig gpu = sample_gpu();
-  gpu.l2_size_kib = 500.0;  // footprint: 100 chunks x 40 tiles x 256 B = 1000 KiB, so half of it misses
-  const FrameTiming t = time_one(color_write_pass(40, 100), gpu);
-  EXPECT_DOUBLE_EQ(t.dram_bytes.total_write(), 100 * 256.0 * (40 + 0.5 * 60));
-  gpu.l2_size_kib = 2000.0;
-  EXPECT_DOUBLE_EQ(time_one(color_write_pass(40, 100), gpu).dram_bytes.total_write(), 100 * 256.0 * 40);
+  gpu.l2_size_kib = 256.0;
+  EXPECT_NEAR(moved(gpu), 1.0 - 0.8 * 8 / 17, 1e-6);
+  gpu.llc_size_kib = 256.0;
+  EXPECT_NEAR(moved(gpu), 1.0 - 0.8 * 9 / 17, 1e-6);
+  gpu.llc_size_kib = 128.0;  // linear between the sizes
+  EXPECT_NEAR(moved(gpu), 1.0 - 0.8 * 8.5 / 17, 1e-6);
+  gpu.llc_size_kib = 0.0;
   gpu.rop_through_l2 = false;  // and where the ROPs have a cache of their own, that one counts
-  gpu.crop_cache_kib = 500.0;
-  EXPECT_DOUBLE_EQ(time_one(color_write_pass(40, 100), gpu).dram_bytes.total_write(),
-                   100 * 256.0 * (40 + 0.5 * 60));
+  gpu.crop_cache_kib = 4.0;
+  EXPECT_NEAR(moved(gpu), 1.0 - 0.8 * 2 / 17, 1e-6);
+  gpu.l2_size_kib = 4096.0 * 1024.0;
+  EXPECT_NEAR(moved(gpu), 1.0 - 0.8 * 2 / 17, 1e-6);
+}
+
+TEST(Dram, CachesInTheRopsKeepColorFromL2) {
+  GpuConfig gpu = sample_gpu();
+  gpu.crop_cache_kib = 16.0;
+  const FrameTiming t = time_one(color_write_pass(0.2), gpu);
+  EXPECT_NEAR(t.passes[0].busy_ns[static_cast<std::size_t>(Unit::l2)],
+              100 * 25'600.0 * (1.0 - 0.8 * 4 / 17) / gpu.l2_bytes_per_clk, 1e-3);
 }
 
 TEST(Dram, FirstReadOfAClearedTargetIsFree) {
   PassCounters c;
-  c.zrop.touched_tiles = c.zrop.first_touched_tiles = 10;
   c.mem.depth_read_bytes = c.mem.depth_write_bytes = 10 * 256;
   PassWork pass = repeated(PassKind::draw, c, 10);
   pass.depth_format = Format::d32_float;
+  set_reuse(pass, 1.0);
   EXPECT_DOUBLE_EQ(time_one(pass, sample_gpu()).dram_bytes.total_read(), 25'600.0);
   pass.depth_cleared_before = true;
   EXPECT_DOUBLE_EQ(time_one(pass, sample_gpu()).dram_bytes.total_read(), 0.0);
   EXPECT_DOUBLE_EQ(time_one(pass, sample_gpu()).dram_bytes.total_write(), 25'600.0);
 }
 
-TEST(Dram, VertexBuffersAreReadOnceWhereTheyFit) {
+TEST(Dram, StreamsWithoutReuseDistancesMoveAllThatTheyAskFor) {
   PassCounters c;
-  c.mem.vertex_read_bytes = 1000;
-  PassWork pass = repeated(PassKind::draw, c, 10);
-  pass.unique_vertex_bytes = 2500;
-  EXPECT_DOUBLE_EQ(time_one(pass, sample_gpu()).dram_bytes.read[static_cast<std::size_t>(Stream::vertex)],
-                   2500.0);
+  c.mem.color_read_bytes = 700;
+  c.mem.constant_read_bytes = 300;
+  EXPECT_DOUBLE_EQ(time_one(repeated(PassKind::resolve, c, 10), sample_gpu()).dram_bytes.total_read(),
+                   10'000.0);
 }
 
 TEST(Dram, CompressiblePixelsMoveOneSample) {
@@ -212,10 +225,10 @@ TEST(Dram, TileBasedGpusMoveEachTileOnceAndBinTheirVertices) {
   GpuConfig gpu = sample_gpu();
   gpu.tile_based = true;
   gpu.l2_size_kib = 1.0;
-  PassWork pass = color_write_pass(40, 100);
+  PassWork pass = color_write_pass(0.4);
   for (PassCounters& c : pass.chunks) c.vs.output_scalars = 10;
   const FrameTiming t = time_one(pass, gpu);
-  EXPECT_DOUBLE_EQ(t.dram_bytes.write[static_cast<std::size_t>(Stream::color)], 100 * 40 * 256.0);
+  EXPECT_NEAR(t.dram_bytes.write[static_cast<std::size_t>(Stream::color)], 100 * 25'600 * 0.4, 1.0);
   EXPECT_DOUBLE_EQ(t.dram_bytes.write[static_cast<std::size_t>(Stream::other)], 100 * 40.0);
   EXPECT_DOUBLE_EQ(t.dram_bytes.read[static_cast<std::size_t>(Stream::other)], 100 * 40.0);
   EXPECT_EQ(t.passes[0].busy_ns[static_cast<std::size_t>(Unit::l2)], 0.0);

@@ -50,6 +50,13 @@ class Printed {
     text += std::to_string(list.size()) + ":";
     for (const T& value : list) add(value);
   }
+  template <class T, std::size_t N>
+  void add(const std::array<T, N>& list) {
+    for (const T& value : list) {
+      add(value);
+      text += " ";
+    }
+  }
   template <class T>
   void add(const T& value) {
     if constexpr (std::is_class_v<T>)

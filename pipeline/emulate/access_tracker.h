@@ -1,0 +1,105 @@
+#pragma once
+// What a worker notes about the memory accesses of a pass: accesses to a sample of all blocks, for the reuse
+// distances of hwsim/reuse.h, and how many atomics went to each address.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "hwsim/reuse.h"
+
+namespace hwsim::pipeline {
+
+inline constexpr std::uint32_t kLineBytes = 64;
+
+struct AccessTracker {
+  static constexpr std::size_t kAtomicSlots = 16384;
+  static constexpr std::size_t kQuads = 16;  ///< of a batch of 64 lanes
+
+  BlockKinds kinds;
+  std::vector<BlockAccess> accesses;
+  /// Texture accesses by the number of first-level cache sizes (hwsim/reuse.h) that miss them.
+  std::array<std::uint64_t, kCacheSizes + 1> l1_missing{};
+  /// Two addresses in one slot add up: that overrates the most frequent address by a 16384th of all atomics,
+  /// which takes a small part of their time where addresses differ.
+  std::vector<std::uint32_t> atomics;
+
+  void start_pass(const BlockKinds& block_kinds, bool storage) {
+    kinds = block_kinds;
+    accesses.clear();
+    l1_missing.fill(0);
+    recent_.start(kinds[at(ReuseStream::texture)].shift);
+    atomics.assign(storage ? kAtomicSlots : 0, 0);
+  }
+  /// A screen bin or a group: the first-level cache starts cold.
+  void start_bin(std::uint32_t bin) {
+    bin_ = bin;
+    primitive_ = 0;
+    recent_.clear();
+  }
+  void start_primitive(std::uint32_t primitive) { primitive_ = primitive; }
+
+  /// Quads that share a register fetch in turn, others after each other: accesses of a batch count quad by
+  /// quad, whatever the register's width. The block is one of the sample.
+  void use(int quad, ReuseStream stream, std::uint32_t block, std::uint32_t read, std::uint32_t write) {
+    batch_[static_cast<std::size_t>(quad) % kQuads].push_back({0, block, stream, read, write});
+  }
+  void use_if_sampled(int quad, ReuseStream stream, std::uint32_t block, std::uint32_t read,
+                      std::uint32_t write) {
+    if (is_sampled(block, kinds[at(stream)].shift)) use(quad, stream, block, read, write);
+  }
+  void end_batch() {
+    for (std::vector<BlockAccess>& quad : batch_) {
+      for (const BlockAccess& a : quad) {
+        if (a.stream == ReuseStream::texture)
+          l1_missing[static_cast<std::size_t>(recent_.missing_sizes(a.block, kLineBytes))] += 1;
+        touch(a.stream, a.block, a.read_bytes, a.write_bytes);
+      }
+      quad.clear();
+    }
+  }
+  /// At once, in the order of the calls; the block is one of the sample.
+  void touch(ReuseStream stream, std::uint32_t block, std::uint32_t read, std::uint32_t write) {
+    const std::uint64_t order = std::uint64_t{primitive_} << 32 | bin_;
+    if (!accesses.empty()) {
+      BlockAccess& last = accesses.back();
+      if (last.block == block && last.stream == stream && last.order == order) {
+        last.read_bytes += read;
+        last.write_bytes += write;
+        return;
+      }
+    }
+    accesses.push_back({order, block, stream, read, write});
+  }
+  void touch_if_sampled(ReuseStream stream, std::uint32_t block, std::uint64_t read, std::uint64_t write) {
+    if (is_sampled(block, kinds[at(stream)].shift))
+      touch(stream, block, static_cast<std::uint32_t>(read), static_cast<std::uint32_t>(write));
+  }
+  void count_atomic(int buffer, std::int32_t word) {
+    const std::uint32_t key = static_cast<std::uint32_t>(word) * 4 + static_cast<std::uint32_t>(buffer);
+    if (!atomics.empty()) atomics[key * 0x9e3779b1u >> 18] += 1;
+  }
+
+ private:
+  RecentBlocks recent_;
+  std::array<std::vector<BlockAccess>, kQuads> batch_;
+  std::uint32_t bin_ = 0, primitive_ = 0;
+};
+
+/// Numbers of blocks of a stream that has several sources: each buffer begins at a place of its own.
+constexpr std::uint32_t buffer_line(int slot, std::uint32_t word) {
+  return (static_cast<std::uint32_t>(slot) << 28) + word / (kLineBytes / 4);
+}
+
+/// One block in 2^shift so that about a thousand or more of `blocks` are sampled, and at most 1 in 32.
+constexpr int sample_shift(std::uint64_t blocks, int shift_max) {
+  int shift = 0;
+  while (shift < shift_max && blocks >> shift >= 2048) ++shift;
+  return shift;
+}
+
+/// Profile of a pass from what its workers noted.
+ReuseProfile make_reuse_profile(std::vector<std::vector<BlockAccess>> by_worker, const BlockKinds& kinds,
+                                const std::array<std::uint64_t, kCacheSizes + 1>& l1_missing, bool exact);
+
+}  // namespace hwsim::pipeline
