@@ -27,7 +27,8 @@ struct ForwardShader {
     }
     const auto position = s.attr3(pipeline::SurfaceVaryings::kPosition);
     const auto surface = lanes::make_surface(material, position, u.lighting.eye);
-    const auto color = lanes::light_surface(s, u.lighting, surface, lit);
+    const auto color =
+        lanes::occlude_ambient(s, u.lighting, surface, lanes::light_surface(s, u.lighting, surface, lit));
     s.output(0, {color.x, color.y, color.z, material.base.w});
   }
 };

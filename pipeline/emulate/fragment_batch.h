@@ -101,6 +101,8 @@ struct VertexBatch {
   alignas(64) float normal[3][kBatchLanes];
   alignas(64) float tangent[4][kBatchLanes];
   alignas(64) float uv0[2][kBatchLanes];
+  alignas(64) float uv1[2][kBatchLanes];
+  int alpha_uv_set = 0;  ///< where the material's base color texture lies: 0 or 1
   alignas(64) float color[4][kBatchLanes];
   alignas(64) float radius[kBatchLanes];
   const float* world_from_local = nullptr;   ///< 4x4, column-major

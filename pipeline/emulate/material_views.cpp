@@ -51,7 +51,13 @@ MaterialView make_material_view(const Material& material, int index, const Textu
 
 bool needs_full_varyings(const Scene& scene) {
   return std::any_of(scene.meshes.begin(), scene.meshes.end(),
-                     [](const Mesh& mesh) { return !mesh.tangents.empty() || !mesh.colors.empty(); });
+                     [](const Mesh& mesh) { return !mesh.tangents.empty() || !mesh.colors.empty(); }) ||
+         std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) {
+           for (const TextureRef* ref : {&m.base_color_texture, &m.metallic_roughness_texture,
+                                         &m.normal_texture, &m.emissive_texture, &m.occlusion_texture})
+             if (ref->texture >= 0 && ref->uv_set == 1) return true;
+           return false;
+         });
 }
 
 MaterialViews::MaterialViews(const Scene& scene, const TextureStore& textures) {

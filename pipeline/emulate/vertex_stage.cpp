@@ -45,6 +45,9 @@ void fetch_vertices(const DrawInfo& draw, std::uint32_t first, int count, Vertex
   batch.world_from_local = draw.world_from_local;
   batch.normal_from_local = draw.normal_from_local;
   const bool tangents = !mesh.tangents.empty(), uvs = !mesh.uv0.empty(), colors = !mesh.colors.empty();
+  const bool uvs1 = !mesh.uv1.empty();
+  const TextureView* alpha = draw.material != nullptr ? draw.material->base_color_texture : nullptr;
+  batch.alpha_uv_set = alpha != nullptr ? alpha->uv_set : 0;
   for (int i = 0; i < count; ++i) {
     const std::size_t v = first + static_cast<std::uint32_t>(i);
     for (int k = 0; k < 3; ++k) {
@@ -57,6 +60,8 @@ void fetch_vertices(const DrawInfo& draw, std::uint32_t first, int count, Vertex
     }
     batch.uv0[0][i] = uvs ? mesh.uv0[v].x : 0.0f;
     batch.uv0[1][i] = uvs ? mesh.uv0[v].y : 0.0f;
+    batch.uv1[0][i] = uvs1 ? mesh.uv1[v].x : 0.0f;
+    batch.uv1[1][i] = uvs1 ? mesh.uv1[v].y : 0.0f;
     batch.radius[i] = mesh.radius.empty() ? 0.0f : mesh.radius[v];
   }
 }

@@ -36,6 +36,8 @@ class ScalarShading {
     put(SurfaceVaryings::kColor, glm::vec3(hit.color));
     varyings_[SurfaceVaryings::kUv0] = hit.uv0.x;
     varyings_[SurfaceVaryings::kUv0 + 1] = hit.uv0.y;
+    varyings_[SurfaceVaryings::kUv1] = hit.uv1.x;
+    varyings_[SurfaceVaryings::kUv1 + 1] = hit.uv1.y;
     varyings_[SurfaceVaryings::kTangent + 3] = hit.tangent.w;
     varyings_[SurfaceVaryings::kColor + 3] = hit.color.w;
   }
@@ -46,11 +48,12 @@ class ScalarShading {
   Vec3<F> attr3(int k) const { return {attr(k), attr(k + 1), attr(k + 2)}; }
   F facing() const { return hit_.front_face ? 1.0f : -1.0f; }
 
-  // The emulator's materials read all textures at the first set of coordinates.
-  Vec4<F> sample_texture(const TextureView* texture, int) const {
+  Vec4<F> sample_texture(const TextureView* texture, int uv_at) const {
     std::uint64_t probes = 0;
-    return ScalarSampler(*texture, nullptr, valid())
-        .sample(hit_.uv0.x, hit_.uv0.y, hit_.uv0_dx.x, hit_.uv0_dx.y, hit_.uv0_dy.x, hit_.uv0_dy.y, probes);
+    const bool second = uv_at == SurfaceVaryings::kUv1;
+    const glm::vec2 uv = second ? hit_.uv1 : hit_.uv0, dx = second ? hit_.uv1_dx : hit_.uv0_dx,
+                    dy = second ? hit_.uv1_dy : hit_.uv0_dy;
+    return ScalarSampler(*texture, nullptr, valid()).sample(uv.x, uv.y, dx.x, dx.y, dy.x, dy.y, probes);
   }
 
   template <class Body>
@@ -104,9 +107,9 @@ AlphaLookup texture_alpha(std::shared_ptr<const SceneMaterials> materials) {
     const float alpha = material.base_color[3] * query.vertex_alpha;
     const TextureView* texture = material.base_color_texture;
     if (texture == nullptr) return alpha;
+    const glm::vec2 uv = texture->uv_set == 1 ? query.uv1 : query.uv0;
     std::uint64_t probes = 0;
-    return alpha *
-           ScalarSampler(*texture, nullptr, {true}).filter(query.uv0.x, query.uv0.y, 0.0f, probes).w.v;
+    return alpha * ScalarSampler(*texture, nullptr, {true}).filter(uv.x, uv.y, 0.0f, probes).w.v;
   };
 }
 
@@ -133,7 +136,8 @@ struct SceneShading {
     ScalarShading s(hit, materials->views.view(hit.material), occluders, to_shadowed_light);
     const MaterialSample<ScalarF> sample = sample_material(s, full_varyings);
     const Surface<ScalarF> surface = make_surface(sample, s.attr3(SurfaceVaryings::kPosition), lighting.eye);
-    const Vec3<ScalarF> color = light_surface(s, lighting, surface, s.valid());
+    const Vec3<ScalarF> color =
+        occlude_ambient(s, lighting, surface, light_surface(s, lighting, surface, s.valid()));
     return {color.x.v, color.y.v, color.z.v, sample.base.w.v};
   }
 };

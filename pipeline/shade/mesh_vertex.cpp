@@ -30,8 +30,8 @@ struct MeshVertexShader {
                    s.constant(m[2][row]) * world.z) +
                       s.constant(m[3][row]));
     if constexpr (kOutput == MeshOutput::uv) {
-      s.varying(0, s.attribute(s.kUv, 0));
-      s.varying(1, s.attribute(s.kUv, 1));
+      s.varying(0, s.attribute(s.kAlphaUv, 0));
+      s.varying(1, s.attribute(s.kAlphaUv, 1));
     }
     if constexpr (kOutput == MeshOutput::surface || kOutput == MeshOutput::full) {
       const Vec3<F> n = s.attribute3(s.kNormal);
@@ -47,13 +47,15 @@ struct MeshVertexShader {
       for (int row = 0; row < 3; ++row) s.varying(V::kTangent + row, s.world_direction(row, t));
       s.varying(V::kTangent + 3, s.attribute(s.kTangent, 3));
       for (int i = 0; i < 4; ++i) s.varying(V::kColor + i, s.attribute(s.kColor, i));
+      s.varying(V::kUv1, s.attribute(s.kUv1, 0));
+      s.varying(V::kUv1 + 1, s.attribute(s.kUv1, 1));
     }
   }
 };
 
 /// Attribute names, in the order of VertexBatch.
 struct VertexAttributes {
-  static constexpr int kPosition = 0, kNormal = 1, kTangent = 2, kUv = 3, kColor = 4;
+  static constexpr int kPosition = 0, kNormal = 1, kTangent = 2, kUv = 3, kColor = 4, kUv1 = 5, kAlphaUv = 6;
 };
 
 class CountVertex : public VertexAttributes {
@@ -93,6 +95,10 @@ class VertexLanes : public VertexAttributes {
         return load(b_.tangent[component] + first_);
       case kUv:
         return load(b_.uv0[component] + first_);
+      case kUv1:
+        return load(b_.uv1[component] + first_);
+      case kAlphaUv:
+        return load((b_.alpha_uv_set == 1 ? b_.uv1 : b_.uv0)[component] + first_);
       default:
         return load(b_.color[component] + first_);
     }

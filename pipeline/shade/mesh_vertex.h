@@ -14,7 +14,8 @@ struct SurfaceVaryings {
   static constexpr int kPosition = 5;  ///< 3, world space
   static constexpr int kTangent = 8;   ///< 4: xyz world space, w handedness
   static constexpr int kColor = 12;    ///< 4
-  static constexpr int kBasic = 8, kFull = 16;
+  static constexpr int kUv1 = 16;      ///< 2
+  static constexpr int kBasic = 8, kFull = 18;
 };
 
 struct MeshVertexUniforms {
@@ -22,7 +23,7 @@ struct MeshVertexUniforms {
 };
 
 const VertexProgram& mesh_position_program();  ///< no varyings: depth passes
-const VertexProgram& mesh_uv_program();        ///< uv0 only, at 0: alpha-tested depth passes
+const VertexProgram& mesh_uv_program();        ///< the base color texture's, at 0: alpha-tested depth passes
 const VertexProgram& mesh_surface_program();   ///< SurfaceVaryings up to kBasic
 const VertexProgram& mesh_full_program();      ///< SurfaceVaryings up to kFull
 

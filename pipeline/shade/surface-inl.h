@@ -19,8 +19,14 @@ enum MaterialBlock : int {
   kMetalRoughTextureBlock = 2,
   kNormalTextureBlock = 3,
   kEmissiveTextureBlock = 4,
-  kVertexColorBlock = 5
+  kVertexColorBlock = 5,
+  kOcclusionTextureBlock = 11  // 6 to 9 are the lights', 10 a tile's
 };
+
+/// Where a texture's coordinates lie among the attribute scalars.
+inline int uv_of(const TextureView* texture) {
+  return texture != nullptr && texture->uv_set == 1 ? SurfaceVaryings::kUv1 : SurfaceVaryings::kUv0;
+}
 
 template <class F>
 struct MaterialSample {
@@ -48,7 +54,7 @@ Vec3<typename S::F> shading_normal(S& s, bool full_varyings) {
   const MaterialView& m = s.material();
   Vec3<F> n = normalize(s.attr3(V::kNormal));
   s.uniform_branch(kNormalTextureBlock, m.normal_texture != nullptr && full_varyings, [&]() HWY_ATTR {
-    const Vec4<F> texel = s.sample_texture(m.normal_texture, V::kUv0);
+    const Vec4<F> texel = s.sample_texture(m.normal_texture, uv_of(m.normal_texture));
     const F scale(m.normal_scale);
     const Vec3<F> t = s.attr3(V::kTangent);
     const Vec3<F> tangent = normalize(t - n * dot(n, t));
@@ -72,16 +78,16 @@ MaterialSample<typename S::F> sample_material(S& s, bool full_varyings) {
   out.roughness = F(m.roughness);
   out.emissive = {F(m.emissive[0]), F(m.emissive[1]), F(m.emissive[2])};
   s.uniform_branch(kBaseTextureBlock, m.base_color_texture != nullptr, [&]() HWY_ATTR {
-    const Vec4<F> texel = s.sample_texture(m.base_color_texture, V::kUv0);
+    const Vec4<F> texel = s.sample_texture(m.base_color_texture, uv_of(m.base_color_texture));
     out.base = {out.base.x * texel.x, out.base.y * texel.y, out.base.z * texel.z, out.base.w * texel.w};
   });
   s.uniform_branch(kMetalRoughTextureBlock, m.metallic_roughness_texture != nullptr, [&]() HWY_ATTR {
-    const Vec4<F> texel = s.sample_texture(m.metallic_roughness_texture, V::kUv0);
+    const Vec4<F> texel = s.sample_texture(m.metallic_roughness_texture, uv_of(m.metallic_roughness_texture));
     out.roughness = out.roughness * texel.y;
     out.metallic = out.metallic * texel.z;
   });
   s.uniform_branch(kEmissiveTextureBlock, m.emissive_texture != nullptr, [&]() HWY_ATTR {
-    const Vec4<F> texel = s.sample_texture(m.emissive_texture, V::kUv0);
+    const Vec4<F> texel = s.sample_texture(m.emissive_texture, uv_of(m.emissive_texture));
     out.emissive = out.emissive * Vec3<F>{texel.x, texel.y, texel.z};
   });
   s.uniform_branch(kVertexColorBlock, full_varyings && m.has_colors, [&]() HWY_ATTR {
@@ -101,6 +107,20 @@ Surface<F> make_surface(const MaterialSample<F>& m, const Vec3<F>& position, con
   set_material(Vec3<F>{m.base.x, m.base.y, m.base.z}, m.metallic, m.roughness, surface);
   surface.emissive = m.emissive;
   return surface;
+}
+
+/// Takes away the ambient light that an occlusion texture keeps off (glTF 2.0, 3.9.3: direct light stays).
+template <class S>
+Vec3<typename S::F> occlude_ambient(S& s, const LightingUniforms& u, const Surface<typename S::F>& surface,
+                                    Vec3<typename S::F> color) {
+  using F = typename S::F;
+  const MaterialView& m = s.material();
+  s.uniform_branch(kOcclusionTextureBlock, m.occlusion_texture != nullptr, [&]() HWY_ATTR {
+    const F open = s.sample_texture(m.occlusion_texture, uv_of(m.occlusion_texture)).x;
+    const F lost = (F(1.0f) - open) * F(m.occlusion_strength);
+    color = color - surface.albedo * broadcast<F>(u.ambient) * lost;
+  });
+  return color;
 }
 
 }  // namespace hwsim::pipeline::HWY_NAMESPACE

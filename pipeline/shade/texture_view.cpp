@@ -45,15 +45,19 @@ TextureStore::TextureStore(const Scene& scene)
   }
   for (const TextureView& base : by_texture_) {
     for (const Sampler& sampler : scene.samplers) {
-      views_.push_back(base);
-      views_.back().sampler = sampler;
+      for (const int uv_set : {0, 1}) {
+        views_.push_back(base);
+        views_.back().sampler = sampler;
+        views_.back().uv_set = uv_set;
+      }
     }
   }
 }
 
 const TextureView* TextureStore::view(const TextureRef& ref) const {
   if (ref.texture < 0) return nullptr;
-  const TextureView& view = views_[static_cast<std::size_t>(ref.texture * sampler_count_ + ref.sampler)];
+  const TextureView& view =
+      views_[static_cast<std::size_t>((ref.texture * sampler_count_ + ref.sampler) * 2 + ref.uv_set)];
   return view.levels > 0 ? &view : nullptr;
 }
 

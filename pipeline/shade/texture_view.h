@@ -18,6 +18,7 @@ struct TextureView {
   int levels = 0;
   bool srgb = false;
   Sampler sampler;
+  int uv_set = 0;                ///< the coordinates that it is read at
   std::uint32_t first_line = 0;  ///< this texture's lines among those of all textures
 };
 
@@ -25,14 +26,14 @@ struct TextureView {
 class TextureStore {
  public:
   explicit TextureStore(const Scene& scene);
-  /// The texture with the sampler of `ref`; null when ref has none.
+  /// The texture with the sampler and the UV set of `ref`; null when ref has none.
   const TextureView* view(const TextureRef& ref) const;
   std::uint32_t line_count() const { return line_count_; }
 
  private:
   std::vector<std::vector<std::uint32_t>> texels_;
   std::vector<TextureView> by_texture_;
-  std::vector<TextureView> views_;  // texture x sampler
+  std::vector<TextureView> views_;  // texture x sampler x UV set
   int sampler_count_ = 0;
   std::uint32_t line_count_ = 0;
 };
