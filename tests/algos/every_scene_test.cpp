@@ -18,10 +18,10 @@ std::string small_spec(const std::string& name) {
   static const std::map<std::string, std::string> small = {
       {"sponza_hall", "bays=4,detail=6"},
       {"grass", "blades=2000"},
-      {"powerplant", "pipes=60,grating_m=1"},
+      {"powerplant", "pipes=20,grating_m=2,sides=4,levels=1"},
       {"dragon", "triangles=20000"},
-      {"old_city", "length_m=12,leaf_cards=100,slats=3,sides=3,bars_per_m=3"},
-      {"foliage", "trees=10,bushes=10,tufts=100,leaf_cards=200,side_m=16"},
+      {"old_city", "length_m=10,tables=1,leaf_cards=20,slats=1,sides=3,bars_per_m=1"},
+      {"foliage", "trees=3,bushes=3,tufts=30,leaf_cards=40,side_m=8"},
       {"bamboo", "culms=30,leaves=60,fallen_leaves=200,sides=4"},
       {"metal", "weave=4,sides=3,segments=6"},
       {"fur_ball", "hairs=3000,segments=3"},
