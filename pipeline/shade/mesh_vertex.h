@@ -14,16 +14,18 @@ struct SurfaceVaryings {
   static constexpr int kPosition = 5;  ///< 3, world space
   static constexpr int kTangent = 8;   ///< 4: xyz world space, w handedness
   static constexpr int kColor = 12;    ///< 4
-  static constexpr int kBasic = 8, kFull = 16;
+  static constexpr int kNormalOnly = 3, kNormalUv = 5, kBasic = 8, kFull = 16;
 };
 
 struct MeshVertexUniforms {
   glm::mat4 clip_from_world{1.0f};
 };
 
-const VertexProgram& mesh_position_program();  ///< no varyings: depth passes
-const VertexProgram& mesh_uv_program();        ///< uv0 only, at 0: alpha-tested depth passes
-const VertexProgram& mesh_surface_program();   ///< SurfaceVaryings up to kBasic
-const VertexProgram& mesh_full_program();      ///< SurfaceVaryings up to kFull
+const VertexProgram& mesh_position_program();   ///< no varyings: depth passes
+const VertexProgram& mesh_uv_program();         ///< uv0 only, at 0: alpha-tested depth passes
+const VertexProgram& mesh_normal_program();     ///< SurfaceVaryings up to kNormalOnly
+const VertexProgram& mesh_normal_uv_program();  ///< SurfaceVaryings up to kNormalUv
+const VertexProgram& mesh_surface_program();    ///< SurfaceVaryings up to kBasic
+const VertexProgram& mesh_full_program();       ///< SurfaceVaryings up to kFull
 
 }  // namespace hwsim::pipeline
