@@ -17,6 +17,13 @@ struct SurfaceVaryings {
   static constexpr int kNormalOnly = 3, kNormalUv = 5, kBasic = 8, kFull = 16;
 };
 
+/// Of mesh_geometry_program: passes that need the primitive's plane and perhaps its alpha.
+struct GeometryVaryings {
+  static constexpr int kPosition = 0;  ///< 3, world space
+  static constexpr int kUv0 = 3;       ///< 2
+  static constexpr int kCount = 5;
+};
+
 struct MeshVertexUniforms {
   glm::mat4 clip_from_world{1.0f};
 };
@@ -25,6 +32,7 @@ const VertexProgram& mesh_position_program();   ///< no varyings: depth passes
 const VertexProgram& mesh_uv_program();         ///< uv0 only, at 0: alpha-tested depth passes
 const VertexProgram& mesh_normal_program();     ///< SurfaceVaryings up to kNormalOnly
 const VertexProgram& mesh_normal_uv_program();  ///< SurfaceVaryings up to kNormalUv
+const VertexProgram& mesh_geometry_program();   ///< GeometryVaryings
 const VertexProgram& mesh_surface_program();    ///< SurfaceVaryings up to kBasic
 const VertexProgram& mesh_full_program();       ///< SurfaceVaryings up to kFull
 
