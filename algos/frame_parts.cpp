@@ -55,14 +55,14 @@ class Pcg {
   std::uint64_t state_ = 0x853c49e6748fea9bull;
 };
 
-void add_point_lights(const FrameRequest& request, LightingUniforms& lighting) {
-  if (request.point_lights <= 0) return;
+void add_point_lights(const FrameRequest& request, int count, LightingUniforms& lighting) {
+  if (count <= 0) return;
   const SceneStats s = stats(*request.scene);
   const glm::vec3 extent = s.bounds_max - s.bounds_min;
   const float range = 0.15f * glm::length(extent);
   Pcg random;
   if (lighting.point_count == 0) lighting.points.clear();
-  for (int i = 0; i < request.point_lights; ++i) {
+  for (int i = 0; i < count; ++i) {
     PointLight light;
     for (int axis = 0; axis < 3; ++axis)
       light.position[axis] = s.bounds_min[axis] + extent[axis] * random.next();
@@ -73,6 +73,15 @@ void add_point_lights(const FrameRequest& request, LightingUniforms& lighting) {
     lighting.points.push_back(light);
   }
   lighting.point_count = static_cast<int>(lighting.points.size());
+}
+
+/// The first of a frame's lights: directional ones, then points.
+void keep_lights(int count, LightingUniforms& lighting) {
+  lighting.directional_count = std::min(lighting.directional_count, count);
+  lighting.point_count = std::min(lighting.point_count, count - lighting.directional_count);
+  // The vectors keep at least one element (LightingUniforms).
+  lighting.directional.resize(static_cast<std::size_t>(std::max(1, lighting.directional_count)));
+  lighting.points.resize(static_cast<std::size_t>(std::max(1, lighting.point_count)));
 }
 
 /// An orthographic view along the light that holds the whole scene.
@@ -157,6 +166,7 @@ Pass& add_target_pass(FrameGraph& graph, const FrameParts& parts, const std::str
   pass.width = target.width;
   pass.height = target.height;
   pass.samples = target.samples;
+  pass.viewports = target.layers.viewports;
   pass.color = {target.color};
   pass.depth = target.depth;
   if (parts.shadow_map) pass.sampled = {parts.shadow_map};
@@ -182,6 +192,7 @@ PipelineState opaque_state(const ForwardTarget& target) {
   state.raster.cull = CullMode::back;
   state.raster.centroid = target.centroid;
   state.raster.sample_rate = target.sample_rate;
+  state.raster.sample_positions = target.layers.positions;
   return state;
 }
 
@@ -189,7 +200,18 @@ LightingUniforms frame_lighting(const FrameRequest& request) {
   const Scene& scene = *request.scene;
   LightingUniforms lighting =
       make_lighting(scene, scene.cameras.at(static_cast<std::size_t>(request.camera)));
-  add_point_lights(request, lighting);
+  switch (request.lights) {
+    case LightProfile::scene:
+      add_point_lights(request, request.point_lights, lighting);
+      break;
+    case LightProfile::simple:
+      keep_lights(1, lighting);
+      break;
+    case LightProfile::complex:
+      add_point_lights(request, kComplexLights - lighting.directional_count - lighting.point_count, lighting);
+      keep_lights(kComplexLights, lighting);
+      break;
+  }
   return lighting;
 }
 
@@ -208,14 +230,22 @@ FrameParts prepare_frame(FrameGraph& graph, const FrameRequest& request) {
 }
 
 ForwardTarget make_forward_target(FrameGraph& graph, const std::string& name, int width, int height,
-                                  int samples, Format color, Format depth) {
+                                  int samples, Format color, Format depth, const MulticastPattern& layers) {
   ForwardTarget target;
   target.width = width;
   target.height = height;
-  target.samples = samples;
-  target.color = graph.add_image({name + "_color", color, width, height, samples});
-  target.depth = graph.add_image({name + "_depth", depth, width, height, samples});
+  const int layer_count = std::max(1, static_cast<int>(layers.viewports.size()));
+  target.samples = samples / layer_count;
+  target.layers = layers;
+  target.color = graph.add_image({name + "_color", color, width, height, target.samples, layer_count});
+  target.depth = graph.add_image({name + "_depth", depth, width, height, target.samples, layer_count});
   return target;
+}
+
+MulticastPattern multicast_layers(const FrameRequest& request, int samples, int emulate) {
+  enum Emulate { automatic, on, off };
+  const bool native = emulate == off || (emulate == automatic && samples <= request.features.native_msaa_max);
+  return native || samples <= 8 ? MulticastPattern{} : multicast_pattern(samples);
 }
 
 void add_forward(FrameGraph& graph, const FrameParts& parts, const std::string& prefix,
@@ -241,6 +271,26 @@ void add_blended(FrameGraph& graph, const FrameParts& parts, const std::string& 
   over.dst_alpha = BlendFactor::one_minus_src_alpha;
   batch.state.blend = {over};
   pass.batches.push_back(std::move(batch));
+}
+
+void add_blended_on_output(FrameGraph& graph, const FrameParts& parts, ImageId output) {
+  if (parts.draws.blend.empty()) return;
+  ForwardTarget target;
+  target.width = graph.width();
+  target.height = graph.height();
+  target.color = output;
+  target.depth = graph.add_image({"blended_depth", Format::d32_float, target.width, target.height, 1});
+  graph.add_clear("blended_clear", {target.depth});
+  Pass& pass = graph.add_pass("blended_depth", PassKind::draw);
+  pass.depth = target.depth;
+  const auto add = [&](const std::vector<DrawCall>& draws, bool alpha_test) {
+    if (draws.empty()) return;
+    pass.batches.push_back(depth_batch(parts.clip_from_world, draws, alpha_test));
+    pass.batches.back().state.raster.cull = CullMode::back;
+  };
+  add(parts.draws.opaque, false);
+  add(parts.draws.mask, true);
+  add_blended(graph, parts, "blended", target);
 }
 
 ImageId add_output(FrameGraph& graph) {

@@ -1,7 +1,9 @@
 // The techniques, family by family. A family lists its own in a table beside its code; a new family is one
 // line here.
+#include "algos/agaa.h"
 #include "algos/deferred.h"
 #include "algos/forward_techniques.h"
+#include "algos/sbaa.h"
 #include "algos/technique.h"
 
 namespace hwsim::algos {
@@ -10,6 +12,8 @@ namespace {
 constexpr std::span<const TechniqueInfo> (*kFamilies[])() = {
     forward_techniques,
     deferred_techniques,
+    sbaa_techniques,
+    agaa_techniques,
 };
 
 }  // namespace

@@ -18,9 +18,10 @@ using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 std::string plan_key(const RunPlan& plan, int jobs) {
-  std::string key = fmt::format("{}|{}x{}|{}|{}|{}|{}", plan.view.scene, plan.view.resolution.width_px,
-                                plan.view.resolution.height_px, plan.view.point_lights,
-                                plan.reference_samples, plan.images, jobs);
+  std::string key =
+      fmt::format("{}|{}x{}|{}|{}|{}|{}|{}", plan.view.scene, plan.view.resolution.width_px,
+                  plan.view.resolution.height_px, plan.view.point_lights,
+                  light_profile_name(plan.view.lights), plan.reference_samples, plan.images, jobs);
   for (const auto& technique : plan.techniques) key += "|" + algos::technique_text(technique, true);
   for (const GpuConfig& gpu : plan.gpus) key += "|" + gpu.id;
   return key;
@@ -127,7 +128,7 @@ void Run::record(const PointResult& point) {
   write_point_files(alone ? directory_->partial().string() : directory_->path(point_folder(point)), point,
                     plan_, scene, reference_ ? &*reference_ : nullptr);
   if (!point.emulation_reused) {
-    fragments_ += shaded_samples(point.emulation->trace);
+    fragments_ += shader_invocations(point.emulation->trace);
     emulation_s_ += point.emulation->wall_s;
   }
   rows_.push_back(summary_row(point));

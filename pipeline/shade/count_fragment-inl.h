@@ -33,9 +33,13 @@ class CountFragment {
   I pixel_x() { return integer(); }
   I pixel_y() { return integer(); }
   int sample_index() const { return -1; }
+  int layer() const { return 0; }
   I coverage() {
     reads_coverage_ = true;
     return integer();
+  }
+  I primitive_id() {  // the draw's base is added: an API's numbers restart with each draw
+    return I(made(OpKind::alu, made(OpKind::value)));
   }
   F facing() { return F(made(OpKind::value)); }
   F attr(int) { return F(made(OpKind::interp)); }
@@ -45,6 +49,17 @@ class CountFragment {
     return four(made(OpKind::texture, u, v));
   }
   Vec4<F> load_image(int, I x, I y, I sample) { return four(made(OpKind::fetch, x, y, sample)); }
+  template <int kChannels>
+  void load_image_int(int, I x, I y, I sample, I (&channels)[kChannels]) {
+    const CountValue request = made(OpKind::fetch, x, y, sample);
+    for (I& c : channels) c = I(made(OpKind::value, request));
+  }
+  void count(std::uint64_t TechniqueCounters::*, M) {}
+  M buffer_nonzero(int, I, M) const { return {}; }
+  I lane_index() { return integer(); }
+  I load_group_byte(I address, M mask) { return I(made(OpKind::group_memory, address, mask)); }
+  void store_group_byte(I address, I value, M mask) { made(OpKind::group_memory, address, value, mask); }
+  void add_group_byte(I address, I value, M mask) { made(OpKind::group_memory, address, value, mask); }
   int image_width(int) const { return 1; }
   int image_height(int) const { return 1; }
 
@@ -79,6 +94,10 @@ class CountFragment {
     made(OpKind::store, x, y);
   }
   void discard(M mask) { made(OpKind::alu, mask); }
+  void output_mask(I mask) {
+    made(OpKind::output, mask);
+    writes_mask_ = true;
+  }
   void output(int target, const Vec4<F>& color) {
     made(OpKind::output, color.x, color.y, color.z);
     made(OpKind::output, color.w);
@@ -90,6 +109,7 @@ class CountFragment {
   int color_outputs() const { return color_outputs_; }
   bool writes_storage() const { return writes_storage_; }
   bool reads_coverage() const { return reads_coverage_; }
+  bool writes_mask() const { return writes_mask_; }
 
  private:
   CountValue made(OpKind kind, CountValue a = {}, CountValue b = {}, CountValue c = {}) {
@@ -114,13 +134,14 @@ class CountFragment {
   int color_outputs_ = 0;
   bool reads_coverage_ = false;
   bool writes_storage_ = false;
+  bool writes_mask_ = false;
 };
 
-/// Counts a shader and fills a program's costs.
+/// Counts a shader and fills a program's costs. Uniforms count where the host itself branches on them.
 template <class Shader>
-FragmentProgram describe_fragment_shader(std::string name, void (*run)(FragmentBatch&, const void*)) {
+FragmentProgram describe_fragment_shader(std::string name, void (*run)(FragmentBatch&, const void*),
+                                         const typename Shader::Uniforms& uniforms = {}) {
   CountFragment counter;
-  const typename Shader::Uniforms uniforms{};
   Shader::run(counter, uniforms);
   FragmentProgram program;
   program.name = std::move(name);
@@ -130,6 +151,7 @@ FragmentProgram describe_fragment_shader(std::string name, void (*run)(FragmentB
   program.color_outputs = counter.color_outputs();
   program.reads_coverage = counter.reads_coverage();
   program.writes_storage = counter.writes_storage();
+  program.writes_mask = counter.writes_mask();
   return program;
 }
 

@@ -56,6 +56,7 @@ struct FragmentProgram {
   bool can_discard = false;  ///< depth writes wait for the shader unless early tests are forced
   bool writes_storage = false;
   bool reads_coverage = false;  ///< asks for its lanes' covered samples
+  bool writes_mask = false;     ///< gives each lane a sample mask (pipeline_state.h, CoverageState)
 };
 
 struct ComputeProgram {
@@ -65,6 +66,7 @@ struct ComputeProgram {
   int block_count = 1;
   int group_width = 16, group_height = 16;  ///< invocations
   int group_memory_bytes = 0;
+  bool leaves_group_memory_zero = false;  ///< clears what it used: no group finds another one's values
 };
 
 }  // namespace hwsim::pipeline
