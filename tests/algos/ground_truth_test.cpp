@@ -118,7 +118,7 @@ TEST(GroundTruth, OfTexturedSquaresEqualsTheSupersampledFrame) {
 }
 
 TEST(GroundTruth, OfAHallEqualsTheSupersampledFrame) {
-  const test::TemporaryFolder folder("ground_truth");
+  const pipeline::test::TemporaryFolder folder("ground_truth");
   const Scene hall = open_scene("sponza_hall", folder.path());
   EXPECT_GE(psnr_db(both_ways(hall, false, 0), "hall without shadows"), 55.0);
   // Shadows through a map have softer and moved edges.
