@@ -159,8 +159,10 @@ const pipeline::VertexProgram& wire_vertex_program() {
   static const pipeline::VertexProgram program =
       pipeline::HWY_NAMESPACE::describe_vertex_shader<HWY_NAMESPACE::WireVertexShader>(
           "wire",
-          [](pipeline::VertexBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_wire_vertex)
-                                                        (b, u); },
+          [](pipeline::VertexBatch& b, const void* u) {
+            HWY_DYNAMIC_DISPATCH(run_wire_vertex)
+            (b, u);
+          },
           WireVertexUniforms{});
   return program;
 }
