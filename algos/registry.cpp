@@ -4,7 +4,9 @@
 #include "algos/deferred.h"
 #include "algos/forward_techniques.h"
 #include "algos/sbaa.h"
+#include "algos/sss.h"
 #include "algos/technique.h"
+#include "algos/wire_aa.h"
 
 namespace hwsim::algos {
 namespace {
@@ -14,6 +16,8 @@ constexpr std::span<const TechniqueInfo> (*kFamilies[])() = {
     deferred_techniques,
     sbaa_techniques,
     agaa_techniques,
+    sss_techniques,
+    wire_techniques,
 };
 
 }  // namespace

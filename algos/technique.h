@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,6 +20,17 @@ enum class DeferredLighting { stencil, compute_tiles };
 /// or 16, seeded point lights where the scene has fewer (the two profiles of SBAA, section 5.2).
 enum class LightProfile : std::uint8_t { scene, simple, complex };
 inline constexpr int kComplexLights = 16;
+enum class WireDepth { split, none, all };  ///< which wires write depth: wide ones, none, all
+
+/// Wire anti-aliasing (techniques 6), asked for by the modifier wire_aa.
+struct WireOptions {
+  float width_px = 1.0f;       ///< least width
+  float full_light_px = 4.0f;  ///< from this width on a wire is lit as any surface
+  bool half_lambert = false, flatten = false;
+  int half_lambert_power = 2;
+  bool fade_per_pixel = false;
+  WireDepth depth = WireDepth::split;
+};
 
 /// What every technique is given.
 struct FrameRequest {
@@ -29,6 +41,7 @@ struct FrameRequest {
   LightProfile lights = LightProfile::scene;
   bool shadows = true;  ///< a shadow map for the scene's shadow caster
   int shadow_map_px = 2048;
+  std::optional<WireOptions> wires;
   GpuFeatures features;
   FunctionalConfig functional;
 };

@@ -31,7 +31,8 @@ class BinRunner : private BinShading {
 
   void run(const Segment& segment, int bin) {
     const auto slot = static_cast<std::size_t>(layer_ * c_.bins_x * c_.bins_y + bin);
-    for (const GeometryItem& item : segment.items) {
+    for (std::size_t number = segment.first_item; number < segment.last_item; ++number) {
+      const GeometryItem& item = segment.items[number];
       const std::uint32_t first = item.bin_start[slot];
       const std::uint32_t last = item.bin_start[slot + 1];
       if (first == last) continue;

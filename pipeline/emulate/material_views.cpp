@@ -10,14 +10,8 @@ namespace {
 
 void set_transform(const glm::mat4& world_from_local, DrawInfo& draw) {
   std::memcpy(draw.world_from_local, glm::value_ptr(world_from_local), sizeof(draw.world_from_local));
-  const glm::mat3 linear(world_from_local);
-  const float determinant = glm::determinant(linear);
-  draw.mirrored = determinant < 0.0f;
-  // The cofactor matrix is the inverse transpose times the determinant: it needs no division, so it also
-  // serves transforms that flatten; the sign keeps normals on their side.
-  const glm::mat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                           glm::cross(linear[0], linear[1]));
-  const glm::mat3 normal = cofactor * (draw.mirrored ? -1.0f : 1.0f);
+  draw.mirrored = glm::determinant(glm::mat3(world_from_local)) < 0.0f;
+  const glm::mat3 normal = normal_from_local(world_from_local);
   std::memcpy(draw.normal_from_local, glm::value_ptr(normal), sizeof(draw.normal_from_local));
 }
 
@@ -28,6 +22,15 @@ void set_culling(CullMode cull, bool double_sided, DrawInfo& draw) {
 }
 
 }  // namespace
+
+glm::mat3 normal_from_local(const glm::mat4& world_from_local) {
+  const glm::mat3 linear(world_from_local);
+  // The cofactor matrix is the inverse transpose times the determinant: it needs no division, so it also
+  // serves transforms that flatten; the sign keeps normals on their side.
+  const glm::mat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                           glm::cross(linear[0], linear[1]));
+  return cofactor * (glm::determinant(linear) < 0.0f ? -1.0f : 1.0f);
+}
 
 MaterialView make_material_view(const Material& material, int index, const TextureStore& textures) {
   MaterialView view;
@@ -87,8 +90,14 @@ std::vector<DrawInfo> MaterialViews::make_draws(const Pass& pass, const Scene& s
       draw.mesh_number = static_cast<std::uint32_t>(mesh);
       draw.part = &draw.mesh->parts[part];
       draw.material = &views_[static_cast<std::size_t>(draw.part->material)];
-      draw.first_vertex = ranges_[mesh][part].first;
-      draw.vertex_count = ranges_[mesh][part].count;
+      draw.first_vertex = call.list ? call.list->first_vertex : ranges_[mesh][part].first;
+      draw.vertex_count = call.list ? call.list->vertex_count : ranges_[mesh][part].count;
+      draw.indices =
+          call.list ? call.list->indices.data() : draw.mesh->indices.data() + draw.part->first_index;
+      draw.index_count =
+          call.list ? static_cast<std::uint32_t>(call.list->indices.size()) : draw.part->index_count;
+      draw.first_index = draw.part->first_index + (call.list ? 1u << 29 : 0u);
+      draw.index_bytes = call.list ? 4 : std::max(2, draw.mesh->index_bytes);
       set_transform(instance.world_from_local, draw);
       set_culling(batch.state.raster.cull, draw.material->double_sided, draw);
       draws.push_back(draw);

@@ -13,20 +13,23 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
-class ComputeLanes {
+class ComputeLanes : public LaneFlow {
  public:
-  using F = LaneF;
-  using I = LaneI;
-  using M = LaneM;
-
   /// Pixels and samples that the invocations of this register work on; `valid`: those that work at all.
   ComputeLanes(GroupBatch& group, int first_lane, I x, I y, I sample, M valid)
-      : group_(group), first_(first_lane), x_(x), y_(y), sample_(sample), valid_(valid), live_(valid) {}
+      : LaneFlow(group.blocks, first_lane, valid), group_(group), x_(x), y_(y), sample_(sample) {}
 
-  M valid() const { return valid_; }
   I pixel_x() const { return x_; }
   I pixel_y() const { return y_; }
   I sample() const { return sample_; }
+
+  const MaterialView& material() const { return *group_.material; }
+  /// As FragmentLanes' (shade/fragment_lanes-inl.h).
+  Vec4<F> sample_texture_at(const TextureView* texture, const TextureSite<F>& at) {
+    const TextureSampler<F, I, M> sampler(*texture, group_.resources->tracker, live_, first_);
+    return sampler.sample(at.u, at.v, at.du_dx, at.dv_dx, at.du_dy, at.dv_dy,
+                          group_.counters->tex.bilinear_probes);
+  }
 
   Vec4<F> load_image(int slot, I x, I y, I sample) {
     const GpuImage& image = *group_.resources->images[static_cast<std::size_t>(slot)];
@@ -123,37 +126,6 @@ class ComputeLanes {
         static_cast<std::uint64_t>(__builtin_popcount(bits)) * info(image.format).bytes;
   }
 
-  /// As FragmentLanes' (shade/fragment_lanes-inl.h).
-  template <class Body>
-  HWY_INLINE void branch(int block, M mask, Body&& body) {
-    const M outer = live_;
-    const M live = mask & outer;
-    if (!any(live)) return;
-    live_ = live;
-    count_trip(group_.blocks, block, first_, live);
-    body();
-    live_ = outer;
-  }
-  template <class Body>
-  HWY_INLINE void uniform_branch(int block, bool condition, Body&& body) {
-    if (!condition) return;
-    count_trip(group_.blocks, block, first_, live_);
-    body();
-  }
-  template <class Body>
-  HWY_INLINE void loop(int block, int count, M mask, Body&& body) {
-    const M outer = live_;
-    const M live = mask & outer;
-    if (!any(live)) return;
-    live_ = live;
-    for (int i = 0; i < count; ++i) {
-      count_trip(group_.blocks, block, first_, live);
-      body(i);
-    }
-    live_ = outer;
-  }
-  std::size_t loop_count(int count) const { return static_cast<std::size_t>(count); }
-
  private:
   /// Images that are stored to are numbered behind the buffers; a sample's tile is as many lines as a texel
   /// has bytes.
@@ -180,10 +152,7 @@ class ComputeLanes {
   }
 
   GroupBatch& group_;
-  int first_;
   I x_, y_, sample_;
-  M valid_;
-  M live_;  ///< of the valid ones, those in the current branch
 };
 
 /// Charges the blocks that a wave of `lanes` invocations went through, and starts the next wave.

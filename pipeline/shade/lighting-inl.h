@@ -58,6 +58,15 @@ Vec3<F> blinn_phong(const Surface<F>& s, const Vec3<F>& l, F n_dot_l) {
   return s.albedo * n_dot_l + s.specular * select(n_dot_l > F(0.0f), lobe, F(0.0f));
 }
 
+/// E * (rho (n.l) + k_s (r.v)^s), the second gated as above; not normalized, as the papers of its time have
+/// it.
+template <class F>
+Vec3<F> phong(const Surface<F>& s, const Vec3<F>& l, F n_dot_l) {
+  const Vec3<F> r = s.normal * (F(2.0f) * dot(s.normal, l)) - l;
+  const F lobe = pow(max(dot(r, s.to_eye), F(0.0f)), s.exponent);
+  return s.albedo * n_dot_l + s.specular * select(n_dot_l > F(0.0f), lobe, F(0.0f));
+}
+
 /// Smith separable G2, Schlick F; no 1/pi on the diffuse part (the lights' scale, techniques 0.5), so pi on
 /// the other.
 template <class F>
@@ -82,7 +91,14 @@ Vec3<F> ggx(const Surface<F>& s, const Vec3<F>& l, F n_dot_l) {
 template <class F>
 Vec3<F> reflect_light(const Surface<F>& s, const Vec3<F>& l, ShadingModel model) {
   const F n_dot_l = max(dot(s.normal, l), F(0.0f));
-  return model == ShadingModel::ggx ? ggx(s, l, n_dot_l) : blinn_phong(s, l, n_dot_l);
+  switch (model) {
+    case ShadingModel::ggx:
+      return ggx(s, l, n_dot_l);
+    case ShadingModel::phong:
+      return phong(s, l, n_dot_l);
+    default:
+      return blinn_phong(s, l, n_dot_l);
+  }
 }
 
 /// 1/d^2 windowed to zero at the range (Karis 2013), times the spot cone; `l` receives the unit direction to
@@ -132,26 +148,34 @@ F shadow_visibility(S& s, const LightingUniforms& u, const Vec3<F>& position, co
   return upper + (lower - upper) * fy;
 }
 
-/// Ambient, emissive, directional lights and the given point lights. `mask`: lanes that are lit at all.
-template <class S, class F, class M>
-Vec3<F> light_surface(S& s, const LightingUniforms& u, std::span<const PointLight> points,
-                      const Surface<F>& surface, M mask) {
-  Vec3<F> sum = surface.emissive + surface.albedo * broadcast<F>(u.ambient);
+/// body(unit direction to the light, its color as it arrives) for directional lights and the given point
+/// lights. `mask`: lanes that are lit at all.
+template <class S, class F, class M, class Body>
+void for_each_light(S& s, const LightingUniforms& u, std::span<const PointLight> points,
+                    const Surface<F>& surface, M mask, Body&& body) {
   s.loop(kDirectionalBlock, u.directional_count, mask, [&](int i) HWY_ATTR {
     const DirectionalLight& light = u.directional[static_cast<std::size_t>(i)];
     F visible(1.0f);
     s.uniform_branch(kShadowBlock, light.shadowed && u.shadow_slot >= 0,
                      [&]() HWY_ATTR { visible = shadow_visibility(s, u, surface.position, surface.normal); });
-    sum = sum + reflect_light(surface, broadcast<F>(light.to_light), u.model) *
-                    (broadcast<F>(light.color) * visible);
+    body(broadcast<F>(light.to_light), broadcast<F>(light.color) * visible);
   });
   s.loop(kPointBlock, static_cast<int>(points.size()), mask, [&](int i) HWY_ATTR {
     const PointLight& light = points[static_cast<std::size_t>(i)];
     Vec3<F> l;
     const F attenuation = point_attenuation(light, surface.position, l);
-    s.branch(kPointInRangeBlock, mask & (attenuation > F(0.0f)), [&]() HWY_ATTR {
-      sum = sum + reflect_light(surface, l, u.model) * (broadcast<F>(light.color) * attenuation);
-    });
+    s.branch(kPointInRangeBlock, mask & (attenuation > F(0.0f)),
+             [&]() HWY_ATTR { body(l, broadcast<F>(light.color) * attenuation); });
+  });
+}
+
+/// Ambient, emissive, directional lights and the given point lights.
+template <class S, class F, class M>
+Vec3<F> light_surface(S& s, const LightingUniforms& u, std::span<const PointLight> points,
+                      const Surface<F>& surface, M mask) {
+  Vec3<F> sum = surface.emissive + surface.albedo * broadcast<F>(u.ambient);
+  for_each_light(s, u, points, surface, mask, [&](const Vec3<F>& l, const Vec3<F>& light) HWY_ATTR {
+    sum = sum + reflect_light(surface, l, u.model) * light;
   });
   return sum;
 }
