@@ -55,6 +55,12 @@ ForwardTarget make_forward_target(pipeline::FrameGraph& graph, const std::string
                                   int samples, Format color = Format::rgba8_srgb,
                                   Format depth = Format::d24_unorm_s8);
 
+/// A pass of `program` over the whole of `target`.
+pipeline::Pass& add_full_screen(pipeline::FrameGraph& graph, const std::string& name,
+                                std::vector<pipeline::ImageId> sampled, pipeline::ImageId target,
+                                const pipeline::FragmentProgram& program,
+                                std::shared_ptr<const void> uniforms);
+
 /// The final image: rgba8_srgb, 1x.
 pipeline::ImageId add_output(pipeline::FrameGraph& graph);
 

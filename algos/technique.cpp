@@ -73,10 +73,11 @@ double choice_index(std::string_view choices, std::string_view value) {
 
 double parse_value(const TechniqueInfo& technique, const ParameterInfo& p, std::string_view text,
                    Problems& problems) {
-  double value = p.choices.empty() ? -1 : choice_index(p.choices, text);
-  if (value >= 0) return value;
+  double value = p.choices.empty() ? 0 : choice_index(p.choices, text);
+  if (!p.choices.empty() && value >= 0) return value;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool number = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  const bool number =  // not an index into choices: those may be numbers themselves
+      p.choices.empty() && error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
   if (number && value >= p.min && value <= p.max) return value;
   add(problems, "T003",
       "technique " + quoted(technique.id) + ": " + std::string(p.name) + " = " + std::string(text) +
@@ -197,7 +198,7 @@ pipeline::FrameGraph build_frame(const TechniqueChoice& choice, const FrameReque
   pipeline::FrameGraph graph = base.info->build(modified, base.parameters);
   for (const TechniquePart& part : choice.parts)
     if (part.info->filter != nullptr)
-      graph.set_output(part.info->filter(graph, graph.output(), part.parameters));
+      graph.set_output(part.info->filter(graph, graph.output(), part.parameters), Format::rgba8_srgb);
   return graph;
 }
 

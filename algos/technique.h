@@ -47,7 +47,7 @@ struct TechniqueInfo {
   std::span<const ParameterInfo> parameters;
   pipeline::FrameGraph (*build)(const FrameRequest& request, const Parameters& parameters) = nullptr;
   void (*modify)(FrameRequest& request, const Parameters& parameters) = nullptr;
-  /// Returns the filtered image; `input` is the frame's, one sample a pixel.
+  /// Returns the filtered image; both hold sRGB codes, one sample a pixel (post_filters.h).
   pipeline::ImageId (*filter)(pipeline::FrameGraph& graph, pipeline::ImageId input,
                               const Parameters& parameters) = nullptr;
   /// Why it cannot go with another technique; empty: it can.

@@ -250,6 +250,7 @@ class BinShading : protected BinColor {
     batch.discarded_lanes = 0;
     batch.blocks.used = 0;
     batch.tex_bilinear_probes = 0;
+    batch.image_probes = 0;
     batch.image_texels = {};
     batch.image_read_bytes = 0;
     batch.storage_read_bytes = batch.storage_write_bytes = 0;

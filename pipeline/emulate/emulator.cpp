@@ -78,6 +78,8 @@ class FrameRunner {
       if (compiled_.images[i].first_pass != position) continue;
       const ImageDesc& desc = graph_.images()[i];
       images_[i] = std::make_unique<GpuImage>(desc.format, desc.width, desc.height, desc.samples);
+      if (const RawImage* contents = graph_.contents({static_cast<int>(i)}))
+        upload_image(*contents, *images_[i]);
     }
     for (std::size_t i = 0; i < buffers_.size(); ++i)
       if (compiled_.buffers[i].first_pass == position) buffers_[i].assign(graph_.buffers()[i].words, 0);
@@ -171,6 +173,7 @@ class FrameRunner {
     for (std::size_t i = 0; i < pass.sampled.size(); ++i) {
       image(pass.sampled[i]).use_all(options_.jobs);
       resources.images[i] = &image(pass.sampled[i]);
+      resources.formats[i] = pass.view_of(graph_, i);
     }
     for (std::size_t i = 0; i < pass.targets.size() && i < resources.targets.size(); ++i) {
       image(pass.targets[i]).use_all(options_.jobs);
@@ -279,10 +282,6 @@ class FrameRunner {
     work.chunks.assign(workers_.front().chunks.size(), PassCounters{});
     for (const BinWorker& worker : workers_)
       for (std::size_t i = 0; i < work.chunks.size(); ++i) work.chunks[i] += worker.chunks[i];
-    for (PassCounters& n : work.chunks) {
-      n.tex.texels += 4 * n.tex.bilinear_probes;
-      n.mem.texture_read_bytes += 16 * n.tex.bilinear_probes;
-    }
     work.reuse = merge_reuse(work);
     if (!pass.storage.empty()) share_same_address(work);
   }
@@ -453,7 +452,7 @@ class FrameRunner {
   Image read_output() {
     GpuImage& from = image(graph_.output());
     from.use_all(options_.jobs);
-    return to_linear_image(from, options_.jobs);
+    return to_linear_image(from, graph_.output_view(), options_.jobs);
   }
 
   Image read_heat() const {

@@ -39,7 +39,8 @@ struct MaterialView {
 /// Image and buffer slots of a pass.
 struct ResourceView {
   std::array<const GpuImage*, kMaxImageSlots> images{};
-  std::array<GpuImage*, 2> targets{};  ///< compute passes: images to store to
+  std::array<Format, kMaxImageSlots> formats{};  ///< as programs read them
+  std::array<GpuImage*, 2> targets{};            ///< compute passes: images to store to
   std::array<std::uint32_t*, kMaxBufferSlots> buffers{};
   std::array<std::uint64_t, kMaxBufferSlots> buffer_words{};
   std::array<std::uint32_t, kMaxImageSlots> image_first_line{};  ///< after the lines of the textures
@@ -89,8 +90,9 @@ struct FragmentBatch {
   std::uint64_t discarded_lanes = 0;
   BlockTrips blocks;
   std::uint64_t tex_bilinear_probes = 0;  ///< beyond the first of each request
+  std::uint64_t image_probes = 0;         ///< filtered requests to the pass's images
   TexelCounts image_texels;               ///< unfiltered texels loaded from the pass's images
-  std::uint64_t image_read_bytes = 0;     ///< their bytes
+  std::uint64_t image_read_bytes = 0;     ///< of both
   std::uint64_t storage_read_bytes = 0, storage_write_bytes = 0;  ///< of the pass's buffers
 };
 

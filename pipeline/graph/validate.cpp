@@ -15,6 +15,7 @@ class Validator {
   std::vector<Diagnostic> run() {
     for (const ImageDesc& image : graph_.images()) check_image(image);
     if (!errors_.empty()) return std::move(errors_);
+    for (std::size_t i = 0; i < written_.size(); ++i) check_contents({static_cast<int>(i)});
     for (const Pass& pass : graph_.passes()) check_pass(pass);
     check_output();
     return std::move(errors_);
@@ -49,9 +50,29 @@ class Validator {
            "gpu.features.native_msaa_max = " + std::to_string(s) + " makes it native");
   }
 
+  void check_contents(ImageId id) {
+    const RawImage* contents = graph_.contents(id);
+    if (contents == nullptr) return;
+    const ImageDesc& image = graph_.image(id);
+    if (image.samples != 1 || contents->width != image.width || contents->height != image.height ||
+        info(image.format).bytes > 4 || info(image.format).is_depth)
+      fail("G009", "image " + text(image) + " is given contents of " + std::to_string(contents->width) + "x" +
+                       std::to_string(contents->height) + " texels of 32 bits");
+    mark_written(id);
+  }
+
+  void check_views(const Pass& pass) {
+    for (std::size_t slot = 0; slot < pass.sampled.size(); ++slot)
+      if (const Format view = pass.view_of(graph_, slot);
+          !same_bits(view, graph_.image(pass.sampled[slot]).format))
+        fail("G003", "pass `" + pass.name + "` reads image " + text(graph_.image(pass.sampled[slot])) +
+                         " as " + std::string(info(view).name));
+  }
+
   void check_pass(const Pass& pass) {
     check_slots(pass);
     for (const ImageId id : pass.sampled) check_read(pass, id);
+    check_views(pass);
     if (pass.source) check_read(pass, pass.source);
     switch (pass.kind) {
       case PassKind::draw:
@@ -231,7 +252,7 @@ class Validator {
       if (info(from.format).is_integer || info(from.format).is_depth)
         fail("G003",
              "pass `" + pass.name + "` resolves image " + text(from) + ", whose values cannot be averaged");
-    } else if (from.samples != to.samples || from.format != to.format) {
+    } else if (from.samples != to.samples || !same_bits(from.format, to.format)) {
       fail("G009", "pass `" + pass.name + "` copies image " + text(from) + " to image " + text(to) +
                        ": formats and sample counts must be equal");
     }
@@ -246,6 +267,9 @@ class Validator {
     const ImageDesc& image = graph_.image(graph_.output());
     if (image.samples != 1)
       fail("G008", "output image " + text(image) + " is multisampled", "resolve it first");
+    if (!same_bits(graph_.output_view(), image.format))
+      fail("G003",
+           "output image " + text(image) + " is shown as " + std::string(info(graph_.output_view()).name));
     if (info(image.format).is_depth) fail("G008", "output image " + text(image) + " has a depth format");
     if (written_[static_cast<std::size_t>(graph_.output().index)] == 0)
       fail("G005", "no pass writes the output image " + text(image));

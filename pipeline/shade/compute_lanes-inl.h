@@ -36,7 +36,7 @@ class ComputeLanes {
     charge_texels(texels, *group_.counters);
     group_.counters->mem.texture_read_bytes += lanes * info(image.format).bytes;
     track_texels(*group_.resources, slot, x, y, sample, mask_bits(live_), first_);
-    return load_texel(image, x, y, sample);
+    return load_texel(image, group_.resources->formats[static_cast<std::size_t>(slot)], x, y, sample);
   }
 
   /// Word `index` of the pass's storage buffer, lanes of `mask` only (others 0).

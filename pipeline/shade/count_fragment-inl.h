@@ -45,6 +45,7 @@ class CountFragment {
     return four(made(OpKind::texture, u, v));
   }
   Vec4<F> load_image(int, I x, I y, I sample) { return four(made(OpKind::fetch, x, y, sample)); }
+  Vec4<F> sample_image(int, F x, F y) { return four(made(OpKind::texture, x, y)); }
   int image_width(int) const { return 1; }
   int image_height(int) const { return 1; }
 
@@ -78,7 +79,10 @@ class CountFragment {
     made(OpKind::output, color.w, sample, mask);
     made(OpKind::store, x, y);
   }
-  void discard(M mask) { made(OpKind::alu, mask); }
+  void discard(M mask) {
+    made(OpKind::alu, mask);
+    can_discard_ = true;
+  }
   void output(int target, const Vec4<F>& color) {
     made(OpKind::output, color.x, color.y, color.z);
     made(OpKind::output, color.w);
@@ -89,6 +93,7 @@ class CountFragment {
   int block_count() const { return recorder_.block_count(); }
   int color_outputs() const { return color_outputs_; }
   bool writes_storage() const { return writes_storage_; }
+  bool can_discard() const { return can_discard_; }
   bool reads_coverage() const { return reads_coverage_; }
 
  private:
@@ -112,6 +117,7 @@ class CountFragment {
   MaterialView material_;
   OpRecorder recorder_;
   int color_outputs_ = 0;
+  bool can_discard_ = false;
   bool reads_coverage_ = false;
   bool writes_storage_ = false;
 };
@@ -128,6 +134,7 @@ FragmentProgram describe_fragment_shader(std::string name, void (*run)(FragmentB
   program.ops = counter.blocks();
   program.block_count = counter.block_count();
   program.color_outputs = counter.color_outputs();
+  program.can_discard = counter.can_discard();
   program.reads_coverage = counter.reads_coverage();
   program.writes_storage = counter.writes_storage();
   return program;

@@ -28,7 +28,7 @@ HWY_INLINE void count_trip(BlockTrips& blocks, int block, int first_lane, LaneM 
 }
 
 /// Reads texels of the pass's image slots: shared by fragment and compute contexts. Coordinates are clamped.
-HWY_INLINE Vec4<LaneF> load_texel(const GpuImage& image, LaneI x, LaneI y, LaneI sample) {
+HWY_INLINE Vec4<LaneF> load_texel(const GpuImage& image, Format format, LaneI x, LaneI y, LaneI sample) {
   const LaneI cx = min(max(x, LaneI(0)), LaneI(image.width - 1)),
               cy = min(max(y, LaneI(0)), LaneI(image.height - 1));
   const LaneI block = shift_right<3>(cy) * LaneI(image.blocks_x) + shift_right<3>(cx);
@@ -41,7 +41,7 @@ HWY_INLINE Vec4<LaneF> load_texel(const GpuImage& image, LaneI x, LaneI y, LaneI
   const auto* texels = reinterpret_cast<const std::int32_t*>(image.texels.data());
   for (int word = 0; word < image.words; ++word)
     words[word] = gather(texels, first + LaneI(word * kBlockLanes));
-  return decode_texel<LaneF, LaneI>(image.format, words, srgb_decode_table().data());
+  return decode_texel<LaneF, LaneI>(format, words, srgb_decode_table().data());
 }
 
 /// Notes the lines of texels of the pass's image slot, as load_texel reads them: a line is a rectangle of a
@@ -117,12 +117,19 @@ class FragmentLanes {
 
   /// Texel (x, y) of the pass's image slot, unfiltered; coordinates are clamped to the image.
   Vec4<F> load_image(int slot, I x, I y, I sample) {
-    const GpuImage& image = *batch_.resources->images[static_cast<std::size_t>(slot)];
-    const auto lanes = static_cast<std::uint64_t>(__builtin_popcount(mask_bits(live_)));
-    batch_.image_texels.add(lanes, info(image.format).bytes);
-    batch_.image_read_bytes += lanes * info(image.format).bytes;
-    track_texels(*batch_.resources, slot, x, y, sample, mask_bits(live_), first_);
-    return load_texel(image, x, y, sample);
+    batch_.image_texels.add(live_count(), image_bytes(slot));
+    return read_texel(slot, x, y, sample);
+  }
+  /// Bilinear, clamped to the edge; coordinates in texels, centers at one half.
+  Vec4<F> sample_image(int slot, F x, F y) {
+    batch_.image_probes += live_count();
+    const F left = floor(x - F(0.5f)), top = floor(y - F(0.5f));
+    const F fx = x - F(0.5f) - left, fy = y - F(0.5f) - top;
+    const I x0 = to_int(left), y0 = to_int(top), x1 = x0 + I(1), y1 = y0 + I(1);
+    const Vec4<F> c00 = read_texel(slot, x0, y0, I(0)), c10 = read_texel(slot, x1, y0, I(0));
+    const Vec4<F> c01 = read_texel(slot, x0, y1, I(0)), c11 = read_texel(slot, x1, y1, I(0));
+    const Vec4<F> upper = c00 + (c10 - c00) * fx, lower = c01 + (c11 - c01) * fx;
+    return upper + (lower - upper) * fy;
   }
   /// Word `index` of the pass's storage buffer, lanes of `mask` only (others 0).
   I load_buffer(int slot, I index, M mask) {
@@ -192,6 +199,22 @@ class FragmentLanes {
   }
 
  private:
+  std::uint64_t live_count() const {
+    return static_cast<std::uint64_t>(__builtin_popcount(mask_bits(live_)));
+  }
+
+  int image_bytes(int slot) const {
+    return info(batch_.resources->images[static_cast<std::size_t>(slot)]->format).bytes;
+  }
+
+  Vec4<F> read_texel(int slot, I x, I y, I sample) {
+    const auto at = static_cast<std::size_t>(slot);
+    const GpuImage& image = *batch_.resources->images[at];
+    batch_.image_read_bytes += live_count() * static_cast<std::uint64_t>(image_bytes(slot));
+    track_texels(*batch_.resources, slot, x, y, sample, mask_bits(live_), first_);
+    return load_texel(image, batch_.resources->formats[at], x, y, sample);
+  }
+
   F interpolate(int k, const float* b1, const float* b2) const {
     const auto first_quad = static_cast<std::size_t>(first_ / 4);
     if (one_triangle_) {
