@@ -43,6 +43,16 @@ constexpr std::array<ParameterInfo, 13> kAxaa = {
     ParameterInfo{"axaa_metric", 0, 0, 1,
                   "rule 3: contrast is the larger or the smaller of both (as printed)", "max|min"}};
 
+constexpr std::array<ParameterInfo, 2> kSmaa = {
+    ParameterInfo{"preset", 2, 0, 3, "threshold, search steps, diagonals and corners",
+                  "low|medium|high|ultra"},
+    ParameterInfo{"edges", 0, 0, 1, "contrast of luma, or the largest of the channels", "luma|color"}};
+
+constexpr std::array<ParameterInfo, 2> kMlaa = {
+    ParameterInfo{"threshold", 0.03125, 0.01, 0.5, "contrast of luma that makes an edge"},
+    ParameterInfo{"count_bits", 0, 0, 1, "bits of a run's length with its stop bit: up to 7 pixels, or 127",
+                  "4|8"}};
+
 constexpr TechniqueInfo kTechniques[] = {
     {.id = "fxaa",
      .description = "FXAA 3.11 Quality: blends along edges found by luma",
@@ -52,6 +62,14 @@ constexpr TechniqueInfo kTechniques[] = {
      .description = "FXAA that leaves filtered pixels and thin lines, and searches less at low contrast",
      .parameters = kAxaa,
      .filter = add_axaa},
+    {.id = "smaa",
+     .description = "SMAA 1x: edges re-vectorized, diagonals and corners included",
+     .parameters = kSmaa,
+     .filter = add_smaa},
+    {.id = "mlaa",
+     .description = "MLAA: runs of edges, re-vectorized by the colors at their ends",
+     .parameters = kMlaa,
+     .filter = add_mlaa},
 };
 
 }  // namespace

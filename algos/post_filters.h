@@ -11,5 +11,9 @@ pipeline::ImageId add_fxaa(pipeline::FrameGraph& graph, pipeline::ImageId input,
                            const Parameters& parameters);
 pipeline::ImageId add_axaa(pipeline::FrameGraph& graph, pipeline::ImageId input,
                            const Parameters& parameters);
+pipeline::ImageId add_smaa(pipeline::FrameGraph& graph, pipeline::ImageId input,
+                           const Parameters& parameters);
+pipeline::ImageId add_mlaa(pipeline::FrameGraph& graph, pipeline::ImageId input,
+                           const Parameters& parameters);
 
 }  // namespace hwsim::algos

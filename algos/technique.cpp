@@ -130,6 +130,15 @@ void check_pair(const TechniqueInfo& a, const TechniqueInfo& b, Problems& proble
         "`hwsim show " + std::string(a.id) + "` describes it");
 }
 
+/// The image as the output of a frame without passes.
+pipeline::FrameGraph start_from_image(const TechniqueChoice& choice, const FrameRequest& request) {
+  require_filters(choice);
+  pipeline::FrameGraph graph(request.scene, request.image->width, request.image->height);
+  graph.set_output(graph.add_image(
+      {"image", Format::rgba8_srgb, request.image->width, request.image->height, 1}, request.image));
+  return graph;
+}
+
 }  // namespace
 
 std::string_view kind_name(TechniqueKind kind) {
@@ -190,12 +199,29 @@ std::string technique_text(const TechniqueChoice& choice, bool complete) {
   return text;
 }
 
+void require_filters(const TechniqueChoice& choice) {
+  std::string filters;
+  for (const TechniqueInfo& t : techniques())
+    if (t.kind() == TechniqueKind::filter) filters += (filters.empty() ? "" : ", ") + std::string(t.id);
+  bool any_filter = false, draws = false;
+  for (const TechniquePart& part : choice.parts) {
+    any_filter = any_filter || part.info->kind() == TechniqueKind::filter;
+    draws = draws || (part.info->kind() != TechniqueKind::filter && part.info->id != "none");
+  }
+  if (any_filter && !draws) return;
+  Problems problems;
+  add(problems, "T005", quoted(technique_text(choice)) + " draws a scene, and the input is an image", "",
+      "filters of images: " + filters);
+  throw InputError(std::move(problems), ExitStatus::usage);
+}
+
 pipeline::FrameGraph build_frame(const TechniqueChoice& choice, const FrameRequest& request) {
   FrameRequest modified = request;
   for (const TechniquePart& part : choice.parts)
     if (part.info->modify != nullptr) part.info->modify(modified, part.parameters);
   const TechniquePart& base = choice.base();
-  pipeline::FrameGraph graph = base.info->build(modified, base.parameters);
+  pipeline::FrameGraph graph =
+      request.image ? start_from_image(choice, request) : base.info->build(modified, base.parameters);
   for (const TechniquePart& part : choice.parts)
     if (part.info->filter != nullptr)
       graph.set_output(part.info->filter(graph, graph.output(), part.parameters), Format::rgba8_srgb);

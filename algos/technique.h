@@ -22,6 +22,8 @@ struct FrameRequest {
   int point_lights = 0;  ///< 0..1024 seeded point lights added to those of the scene
   bool shadows = true;   ///< a shadow map for the scene's shadow caster
   int shadow_map_px = 2048;
+  /// Stands for the scene, which is empty then: sRGB codes of a finished frame. Only filters work on it.
+  std::shared_ptr<const pipeline::RawImage> image;
   GpuFeatures features;
   FunctionalConfig functional;
 };
@@ -83,6 +85,9 @@ TechniqueChoice parse_technique(std::string_view text);
 /// A base `none` beside other parts is left out.
 std::string technique_text(const TechniqueChoice& choice, bool complete = false);
 std::string technique_text(const TechniquePart& part, bool complete = false);
+
+/// Throws InputError T005 unless the choice filters and draws nothing: what an image can be given to.
+void require_filters(const TechniqueChoice& choice);
 
 /// The frame graph of the combination.
 pipeline::FrameGraph build_frame(const TechniqueChoice& choice, const FrameRequest& request);

@@ -98,6 +98,7 @@ void Run::stage_progress(double done_ratio, const std::string& what) {
 
 void Run::load() {
   loaded_ = load_view(plan_.view);
+  if (loaded_.image) plan_.view.resolution = {loaded_.image->width, loaded_.image->height};
   for (const Diagnostic& note : loaded_.scene->notes) context_.log.report(note);
   if (plan_.reference_samples == 0) return;
   reference_ = make_reference(plan_.view, loaded_, plan_.reference_samples, options_.common.jobs,
