@@ -53,6 +53,12 @@ constexpr std::array<ParameterInfo, 2> kMlaa = {
     ParameterInfo{"count_bits", 0, 0, 1, "bits of a run's length with its stop bit: up to 7 pixels, or 127",
                   "4|8"}};
 
+constexpr std::array<ParameterInfo, 2> kCmaa = {
+    ParameterInfo{"threshold", 1.0 / 13.0, 0.04, 0.125,
+                  "color difference that makes an edge, weighted by luma"},
+    ParameterInfo{"cmaa_avg_quirk", 1, 0, 1,
+                  "pruning takes the mean of four neighbors, as the public port does", "off|on"}};
+
 constexpr TechniqueInfo kTechniques[] = {
     {.id = "fxaa",
      .description = "FXAA 3.11 Quality: blends along edges found by luma",
@@ -66,6 +72,10 @@ constexpr TechniqueInfo kTechniques[] = {
      .description = "SMAA 1x: edges re-vectorized, diagonals and corners included",
      .parameters = kSmaa,
      .filter = add_smaa},
+    {.id = "cmaa",
+     .description = "CMAA: locally dominant edges, corners and long steps, in place",
+     .parameters = kCmaa,
+     .filter = add_cmaa},
     {.id = "mlaa",
      .description = "MLAA: runs of edges, re-vectorized by the colors at their ends",
      .parameters = kMlaa,

@@ -13,6 +13,8 @@ pipeline::ImageId add_axaa(pipeline::FrameGraph& graph, pipeline::ImageId input,
                            const Parameters& parameters);
 pipeline::ImageId add_smaa(pipeline::FrameGraph& graph, pipeline::ImageId input,
                            const Parameters& parameters);
+pipeline::ImageId add_cmaa(pipeline::FrameGraph& graph, pipeline::ImageId input,
+                           const Parameters& parameters);
 pipeline::ImageId add_mlaa(pipeline::FrameGraph& graph, pipeline::ImageId input,
                            const Parameters& parameters);
 

@@ -8,6 +8,7 @@
 #include "cli/cache.h"
 #include "cli/commands.h"
 #include "cli/files.h"
+#include "cli/image_input.h"
 #include "cli/progress.h"
 #include "cli/run_files.h"
 
@@ -29,11 +30,14 @@ std::string plan_key(const RunPlan& plan, int jobs) {
 std::string plan_text(const RunPlan& plan, int jobs) {
   const size_t points = plan.techniques.size() * plan.gpus.size();
   std::string text = fmt::format(
-      "plan: {}, {} x {} = {}, {}x{}, engine {}, {} threads", plan.view.scene,
+      "plan: {}, {} x {} = {}, {}, engine {}, {} threads", plan.view.scene,
       plan.techniques.size() == 1 ? "1 technique" : fmt::format("{} techniques", plan.techniques.size()),
       plan.gpus.size() == 1 ? "1 GPU" : fmt::format("{} GPUs", plan.gpus.size()),
-      points == 1 ? "1 point" : fmt::format("{} points", points), plan.view.resolution.width_px,
-      plan.view.resolution.height_px, engine_name(plan.engine), jobs);
+      points == 1 ? "1 point" : fmt::format("{} points", points),
+      is_image_file(plan.view.scene)
+          ? "the image's size"
+          : fmt::format("{}x{}", plan.view.resolution.width_px, plan.view.resolution.height_px),
+      engine_name(plan.engine), jobs);
   if (plan.reference_samples > 0)
     text += fmt::format(", reference of {} samples a pixel", plan.reference_samples);
   if (const auto seconds = remembered_seconds(plan_key(plan, jobs)))

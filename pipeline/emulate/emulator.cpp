@@ -178,6 +178,7 @@ class FrameRunner {
     for (std::size_t i = 0; i < pass.targets.size() && i < resources.targets.size(); ++i) {
       image(pass.targets[i]).use_all(options_.jobs);
       resources.targets[i] = &image(pass.targets[i]);
+      resources.target_formats[i] = pass.target_view_of(graph_, i);
     }
     for (std::size_t i = 0; i < pass.storage.size(); ++i) {
       std::vector<std::uint32_t>& words = buffers_[static_cast<std::size_t>(pass.storage[i].index)];
@@ -398,7 +399,20 @@ class FrameRunner {
       w.current_chunk = static_cast<std::uint32_t>(bin * bands / bins);
       run_full_screen_bin(c, static_cast<int>(bin), w);
     });
+    apply_stores(c.resources);
     finish_workers(pass, work);
+  }
+
+  void apply_stores(const ResourceView& resources) {
+    std::vector<ImageStore> stores;
+    for (BinWorker& worker : workers_) {
+      stores.insert(stores.end(), worker.stores.begin(), worker.stores.end());
+      worker.stores.clear();
+    }
+    std::stable_sort(stores.begin(), stores.end(), [](const ImageStore& a, const ImageStore& b) {
+      return a.target != b.target ? a.target < b.target : a.order < b.order;
+    });
+    for (const ImageStore& store : stores) resources.targets[store.target]->texels[store.texel] = store.word;
   }
 
   void run_compute(const Pass& pass, PassWork& work) {

@@ -2,6 +2,7 @@
 // Up to 16 quads on their way through a fragment shader: 64 lanes, four for each quad.
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "hwsim/counters.h"
 #include "pipeline/emulate/access_tracker.h"
@@ -40,7 +41,8 @@ struct MaterialView {
 struct ResourceView {
   std::array<const GpuImage*, kMaxImageSlots> images{};
   std::array<Format, kMaxImageSlots> formats{};  ///< as programs read them
-  std::array<GpuImage*, 2> targets{};            ///< compute passes: images to store to
+  std::array<GpuImage*, 2> targets{};            ///< images that programs store to
+  std::array<Format, 2> target_formats{};        ///< as they store to them
   std::array<std::uint32_t*, kMaxBufferSlots> buffers{};
   std::array<std::uint64_t, kMaxBufferSlots> buffer_words{};
   std::array<std::uint32_t, kMaxImageSlots> image_first_line{};  ///< after the lines of the textures
@@ -60,6 +62,14 @@ struct TexelCounts {
   void add(std::uint64_t texels, int bytes_per_texel) {
     (bytes_per_texel <= 4 ? bits32 : bytes_per_texel <= 8 ? bits64 : bits128) += texels;
   }
+};
+
+/// A texel that a fragment program stores to a target of its pass. Stores take effect when the pass ends,
+/// target by target, in the order of screen bins, batches and lanes: so the last one does not depend on
+/// threads.
+struct ImageStore {
+  std::uint64_t order = 0;  ///< bin, batch, lane
+  std::uint32_t target = 0, texel = 0, word = 0;
 };
 
 struct FragmentBatch {
@@ -85,7 +95,11 @@ struct FragmentBatch {
   const MaterialView* material = nullptr;
   const ResourceView* resources = nullptr;
 
+  std::vector<ImageStore>* stores = nullptr;  ///< of the worker
+  std::uint64_t store_order = 0;              ///< of the batch, with room for the lane
+
   // Results
+  alignas(64) float depth[kBatchLanes];  ///< of programs that write it
   alignas(64) float color[kMaxColorTargets][4][kBatchLanes];
   std::uint64_t discarded_lanes = 0;
   BlockTrips blocks;

@@ -21,6 +21,11 @@ Format Pass::view_of(const FrameGraph& graph, std::size_t slot) const {
   return view == Format::none ? graph.image(sampled.at(slot)).format : view;
 }
 
+Format Pass::target_view_of(const FrameGraph& graph, std::size_t slot) const {
+  const Format view = slot < target_views.size() ? target_views[slot] : Format::none;
+  return view == Format::none ? graph.image(targets.at(slot)).format : view;
+}
+
 ImageId FrameGraph::add_image(ImageDesc desc) { return add_image(std::move(desc), nullptr); }
 
 ImageId FrameGraph::add_image(ImageDesc desc, std::shared_ptr<const RawImage> contents) {

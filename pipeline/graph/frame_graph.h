@@ -90,14 +90,19 @@ struct Pass {
   int groups_x = 0, groups_y = 0;        // compute
   std::shared_ptr<const void> uniforms;  // full_screen and compute
 
-  std::vector<ImageId> targets;  ///< clear: images; copy and resolve: the destination
-  ImageId source;                ///< copy and resolve
+  std::vector<ImageId> targets;  ///< clear: images; copy and resolve: the destination; full-screen and
+                                 ///< compute: images that shaders store to
+  ImageId source;  ///< copy and resolve
   glm::vec4 clear_color{0.0f};
   float clear_depth = 1.0f;
   std::uint8_t clear_stencil = 0;
-  bool keep = false;  ///< never culled: a simulated workload without output
+  std::vector<Format>
+      target_views;  ///< as which shaders store to `targets`; missing or none: the image's format
+  float full_screen_depth = 0.0f;  ///< of the triangle that covers the screen
+  bool keep = false;               ///< never culled: a simulated workload without output
 
   Format view_of(const FrameGraph& graph, std::size_t slot) const;
+  Format target_view_of(const FrameGraph& graph, std::size_t slot) const;
 };
 
 class FrameGraph {

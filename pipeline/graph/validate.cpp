@@ -139,12 +139,33 @@ class Validator {
       mark_written(id);
     }
     if (pass.depth) check_depth(pass);
+    check_stores(pass);
     if (pass.kind == PassKind::full_screen) {
       if (pass.fragment == nullptr)
         fail("G007", "full-screen pass `" + pass.name + "` has no fragment program");
       check_program(pass, pass.fragment, pass.state, 0);
     }
     for (const DrawBatch& batch : pass.batches) check_batch(pass, batch);
+  }
+
+  void check_stores(const Pass& pass) {
+    if (!pass.targets.empty() && pass.kind == PassKind::draw)
+      fail("G007",
+           "pass `" + pass.name + "` stores to images, which only full-screen and compute passes can");
+    for (std::size_t slot = 0; slot < pass.targets.size(); ++slot) {
+      const ImageDesc& image = graph_.image(pass.targets[slot]);
+      if (image.samples != 1 || info(image.format).bytes > 4 || info(image.format).is_depth ||
+          !same_bits(pass.target_view_of(graph_, slot), image.format))
+        fail("G003", "pass `" + pass.name + "` stores to image " + text(image) + " as " +
+                         std::string(info(pass.target_view_of(graph_, slot)).name));
+      if (std::find(pass.sampled.begin(), pass.sampled.end(), pass.targets[slot]) != pass.sampled.end())
+        fail("G004", "pass `" + pass.name + "` reads image " + text(image) + " while it stores to it");
+      mark_written(pass.targets[slot]);
+    }
+    const bool writes = pass.kind == PassKind::full_screen && pass.state.depth.write;
+    if (writes && (pass.fragment == nullptr || !pass.fragment->writes_depth || pass.samples != 1))
+      fail("G007",
+           "full-screen pass `" + pass.name + "` writes depth, which its program must give, at one sample");
   }
 
   void check_size(const Pass& pass, const ImageDesc& image) {

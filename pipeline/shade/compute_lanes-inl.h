@@ -71,7 +71,7 @@ class ComputeLanes {
       for (int w = 0; w < image.words; ++w)
         image.texels[image.word_index(px[lane], py[lane], ps[lane], w)] =
             static_cast<std::uint32_t>(words[w][lane]);
-      note_store(image, target, lane, image.word_index(px[lane], py[lane], ps[lane], 0));
+      note_store(*group_.resources, target, first_ + lane, image.word_index(px[lane], py[lane], ps[lane], 0));
     }
     group_.counters->mem.storage_write_bytes +=
         static_cast<std::uint64_t>(__builtin_popcount(bits)) * info(image.format).bytes;
@@ -109,18 +109,6 @@ class ComputeLanes {
   std::size_t loop_count(int count) const { return static_cast<std::size_t>(count); }
 
  private:
-  /// Images that are stored to are numbered behind the buffers; a sample's tile is as many lines as a texel
-  /// has bytes.
-  void note_store(const GpuImage& image, int target, int lane, std::size_t first_word) const {
-    const auto bytes = static_cast<std::uint32_t>(info(image.format).bytes);
-    const auto texel = static_cast<std::uint32_t>(first_word % kBlockLanes);
-    const auto tile =
-        static_cast<std::uint32_t>(first_word / kBlockLanes / static_cast<std::size_t>(image.words));
-    group_.resources->tracker->use_if_sampled(
-        (first_ + lane) / 4, ReuseStream::storage,
-        buffer_line(kMaxBufferSlots + target, 0) + tile * bytes + texel * bytes / kLineBytes, 0, bytes);
-  }
-
   GroupBatch& group_;
   int first_;
   I x_, y_, sample_;

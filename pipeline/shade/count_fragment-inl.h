@@ -46,6 +46,8 @@ class CountFragment {
   }
   Vec4<F> load_image(int, I x, I y, I sample) { return four(made(OpKind::fetch, x, y, sample)); }
   Vec4<F> sample_image(int, F x, F y) { return four(made(OpKind::texture, x, y)); }
+  int target_width(int) const { return 1; }
+  int target_height(int) const { return 1; }
   int image_width(int) const { return 1; }
   int image_height(int) const { return 1; }
 
@@ -79,6 +81,10 @@ class CountFragment {
     made(OpKind::output, color.w, sample, mask);
     made(OpKind::store, x, y);
   }
+  void output_depth(F depth) {
+    made(OpKind::output, depth);
+    writes_depth_ = true;
+  }
   void discard(M mask) {
     made(OpKind::alu, mask);
     can_discard_ = true;
@@ -93,6 +99,7 @@ class CountFragment {
   int block_count() const { return recorder_.block_count(); }
   int color_outputs() const { return color_outputs_; }
   bool writes_storage() const { return writes_storage_; }
+  bool writes_depth() const { return writes_depth_; }
   bool can_discard() const { return can_discard_; }
   bool reads_coverage() const { return reads_coverage_; }
 
@@ -118,6 +125,7 @@ class CountFragment {
   OpRecorder recorder_;
   int color_outputs_ = 0;
   bool can_discard_ = false;
+  bool writes_depth_ = false;
   bool reads_coverage_ = false;
   bool writes_storage_ = false;
 };
@@ -135,6 +143,7 @@ FragmentProgram describe_fragment_shader(std::string name, void (*run)(FragmentB
   program.block_count = counter.block_count();
   program.color_outputs = counter.color_outputs();
   program.can_discard = counter.can_discard();
+  program.writes_depth = counter.writes_depth();
   program.reads_coverage = counter.reads_coverage();
   program.writes_storage = counter.writes_storage();
   return program;

@@ -63,6 +63,19 @@ HWY_INLINE void track_texels(const ResourceView& resources, int slot, LaneI x, L
   track_lines(*resources.tracker, line, lanes, first_lane, static_cast<std::uint32_t>(bytes));
 }
 
+/// Notes a texel stored to the pass's target: those images are numbered behind the buffers; a sample's tile
+/// is as many lines as a texel has bytes.
+inline void note_store(const ResourceView& resources, int target, int lane, std::size_t first_word) {
+  const GpuImage& image = *resources.targets[static_cast<std::size_t>(target)];
+  const auto bytes = static_cast<std::uint32_t>(info(image.format).bytes);
+  const auto texel = static_cast<std::uint32_t>(first_word % kBlockLanes);
+  const auto tile =
+      static_cast<std::uint32_t>(first_word / kBlockLanes / static_cast<std::size_t>(image.words));
+  resources.tracker->use_if_sampled(
+      lane / 4, ReuseStream::storage,
+      buffer_line(kMaxBufferSlots + target, 0) + tile * bytes + texel * bytes / kLineBytes, 0, bytes);
+}
+
 class FragmentLanes {
  public:
   using F = LaneF;
@@ -147,6 +160,37 @@ class FragmentLanes {
     return BufferAccess(*batch_.resources, slot, first_).add_words(index, value, mask & active_);
   }
 
+  /// To the pass's target, which holds it when the pass has ended; coordinates are inside the image.
+  void store_image(int target, I x, I y, I sample, const Vec4<F>& color, M mask) {
+    const auto at = static_cast<std::size_t>(target);
+    const GpuImage& image = *batch_.resources->targets[at];
+    I encoded[4] = {I(0), I(0), I(0), I(0)};
+    encode_texel<F, I>(batch_.resources->target_formats[at], color, encoded);
+    HWY_ALIGN std::int32_t word[kVectorLanes], px[kVectorLanes], py[kVectorLanes], ps[kVectorLanes];
+    store(encoded[0], word);
+    store(x, px);
+    store(y, py);
+    store(sample, ps);
+    const std::uint32_t bits = mask_bits(mask & live_ & active_);
+    for (std::uint32_t rest = bits; rest != 0; rest &= rest - 1) {
+      const int lane = __builtin_ctz(rest);
+      note_store(*batch_.resources, target, first_ + lane, image.word_index(px[lane], py[lane], ps[lane], 0));
+      batch_.stores->push_back({batch_.store_order + static_cast<std::uint64_t>(first_ + lane),
+                                static_cast<std::uint32_t>(target),
+                                static_cast<std::uint32_t>(image.word_index(px[lane], py[lane], ps[lane], 0)),
+                                static_cast<std::uint32_t>(word[lane])});
+    }
+    batch_.storage_write_bytes += static_cast<std::uint64_t>(__builtin_popcount(bits)) *
+                                  static_cast<std::uint64_t>(info(image.format).bytes);
+  }
+  void output_depth(F depth) { store(depth, batch_.depth + first_); }
+
+  int target_width(int target) const {
+    return batch_.resources->targets[static_cast<std::size_t>(target)]->width;
+  }
+  int target_height(int target) const {
+    return batch_.resources->targets[static_cast<std::size_t>(target)]->height;
+  }
   int image_width(int slot) const { return batch_.resources->images[static_cast<std::size_t>(slot)]->width; }
   int image_height(int slot) const {
     return batch_.resources->images[static_cast<std::size_t>(slot)]->height;

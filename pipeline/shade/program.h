@@ -55,6 +55,7 @@ struct FragmentProgram {
   int varying_scalars = 0;   ///< must equal those of the vertex program; 0 for full-screen programs
   bool can_discard = false;  ///< depth writes wait for the shader unless early tests are forced
   bool writes_storage = false;
+  bool writes_depth = false;    ///< full-screen passes: gives each fragment its depth
   bool reads_coverage = false;  ///< asks for its lanes' covered samples
 };
 
