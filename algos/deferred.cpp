@@ -147,11 +147,7 @@ void finish(FrameGraph& graph, const FrameParts& parts, const GBuffer& g) {
     graph.add_resolve("resolve", g.lit, output);
     return;
   }
-  Pass& pass = graph.add_pass("present", PassKind::full_screen);
-  pass.sampled = {g.lit};
-  pass.color = {output};
-  pass.fragment = &scale_program();
-  pass.uniforms = std::make_shared<ScaleUniforms>();
+  add_full_screen(graph, "present", {g.lit}, output, scale_program(), std::make_shared<ScaleUniforms>());
 }
 
 FrameGraph build_deferred(const FrameRequest& request, const Parameters& parameters) {

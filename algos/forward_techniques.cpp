@@ -11,25 +11,13 @@ namespace hwsim::algos {
 namespace {
 using namespace pipeline;
 
-void add_full_screen(FrameGraph& graph, const std::string& name, ImageId source, ImageId target,
-                     const FragmentProgram& program, std::shared_ptr<const void> uniforms,
-                     bool additive = false) {
-  Pass& pass = graph.add_pass(name, PassKind::full_screen);
-  pass.sampled = {source};
-  pass.color = {target};
-  pass.fragment = &program;
-  pass.uniforms = std::move(uniforms);
-  if (additive)
-    pass.state.blend = {{true, BlendFactor::one, BlendFactor::one, BlendFactor::one, BlendFactor::one, 0xf}};
-}
-
 // Variant A: one big image, box filter.
 void build_ordered(FrameGraph& graph, const FrameParts& parts, int factor) {
   const ForwardTarget target =
       make_forward_target(graph, "supersampled", graph.width() * factor, graph.height() * factor, 1);
   add_forward(graph, parts, "", target);
   const ImageId output = add_output(graph);
-  add_full_screen(graph, "downsample", target.color, output, downsample_program(),
+  add_full_screen(graph, "downsample", {target.color}, output, downsample_program(),
                   std::make_shared<DownsampleUniforms>(DownsampleUniforms{factor}));
 }
 
@@ -46,10 +34,11 @@ void build_accumulated(FrameGraph& graph, const FrameParts& parts, int factor) {
                         (2.0f * static_cast<float>(j / factor) + 1.0f) / (2.0f * k) - 0.5f};
     const std::string number = std::to_string(j) + "_";
     add_forward(graph, parts, number, target);
-    add_full_screen(graph, number + "accumulate", target.color, sum, scale_program(),
-                    std::make_shared<ScaleUniforms>(ScaleUniforms{1.0f}), true);
+    Pass& pass = add_full_screen(graph, number + "accumulate", {target.color}, sum, scale_program(),
+                                 std::make_shared<ScaleUniforms>(ScaleUniforms{1.0f}));
+    pass.state.blend = {{true, BlendFactor::one, BlendFactor::one, BlendFactor::one, BlendFactor::one, 0xf}};
   }
-  add_full_screen(graph, "normalize", sum, add_output(graph), scale_program(),
+  add_full_screen(graph, "normalize", {sum}, add_output(graph), scale_program(),
                   std::make_shared<ScaleUniforms>(ScaleUniforms{1.0f / (k * k)}));
 }
 

@@ -317,6 +317,18 @@ void add_blended_on_output(FrameGraph& graph, const FrameParts& parts, ImageId o
   add_blended(graph, parts, "blended", target);
 }
 
+Pass& add_full_screen(FrameGraph& graph, const std::string& name, std::vector<ImageId> sampled,
+                      ImageId target, const FragmentProgram& program, std::shared_ptr<const void> uniforms) {
+  Pass& pass = graph.add_pass(name, PassKind::full_screen);
+  pass.width = graph.image(target).width;
+  pass.height = graph.image(target).height;
+  pass.sampled = std::move(sampled);
+  pass.color = {target};
+  pass.fragment = &program;
+  pass.uniforms = std::move(uniforms);
+  return pass;
+}
+
 ImageId add_output(FrameGraph& graph) {
   const ImageId output = graph.add_image({"output", Format::rgba8_srgb, graph.width(), graph.height(), 1});
   graph.set_output(output);

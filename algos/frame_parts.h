@@ -70,6 +70,12 @@ inline constexpr std::string_view kEmulateChoices = "auto|on|off";
 /// The layers of eight samples that make `samples`; none where they are native, or to be.
 pipeline::MulticastPattern multicast_layers(const FrameRequest& request, int samples, int emulate);
 
+/// A pass of `program` over the whole of `target`.
+pipeline::Pass& add_full_screen(pipeline::FrameGraph& graph, const std::string& name,
+                                std::vector<pipeline::ImageId> sampled, pipeline::ImageId target,
+                                const pipeline::FragmentProgram& program,
+                                std::shared_ptr<const void> uniforms);
+
 /// The final image: rgba8_srgb, 1x.
 pipeline::ImageId add_output(pipeline::FrameGraph& graph);
 

@@ -5,6 +5,7 @@
 #include "algos/forward_techniques.h"
 #include "algos/sbaa.h"
 #include "algos/sss.h"
+#include "algos/post_filters.h"
 #include "algos/technique.h"
 #include "algos/wire_aa.h"
 
@@ -18,6 +19,7 @@ constexpr std::span<const TechniqueInfo> (*kFamilies[])() = {
     agaa_techniques,
     sss_techniques,
     wire_techniques,
+    post_filters,
 };
 
 }  // namespace

@@ -73,10 +73,11 @@ double choice_index(std::string_view choices, std::string_view value) {
 
 double parse_value(const TechniqueInfo& technique, const ParameterInfo& p, std::string_view text,
                    Problems& problems) {
-  double value = p.choices.empty() ? -1 : choice_index(p.choices, text);
-  if (value >= 0) return value;
+  double value = p.choices.empty() ? 0 : choice_index(p.choices, text);
+  if (!p.choices.empty() && value >= 0) return value;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool number = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  const bool number =  // not an index into choices: those may be numbers themselves
+      p.choices.empty() && error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
   if (number && value >= p.min && value <= p.max) return value;
   add(problems, "T003",
       "technique " + quoted(technique.id) + ": " + std::string(p.name) + " = " + std::string(text) +
@@ -127,6 +128,15 @@ void check_pair(const TechniqueInfo& a, const TechniqueInfo& b, Problems& proble
   else if (!reason.empty())
     add(problems, "T004", both + " cannot be combined: " + reason, "",
         "`hwsim show " + std::string(a.id) + "` describes it");
+}
+
+/// The image as the output of a frame without passes.
+pipeline::FrameGraph start_from_image(const TechniqueChoice& choice, const FrameRequest& request) {
+  require_filters(choice);
+  pipeline::FrameGraph graph(request.scene, request.image->width, request.image->height);
+  graph.set_output(graph.add_image(
+      {"image", Format::rgba8_srgb, request.image->width, request.image->height, 1}, request.image));
+  return graph;
 }
 
 }  // namespace
@@ -189,15 +199,32 @@ std::string technique_text(const TechniqueChoice& choice, bool complete) {
   return text;
 }
 
+void require_filters(const TechniqueChoice& choice) {
+  std::string filters;
+  for (const TechniqueInfo& t : techniques())
+    if (t.kind() == TechniqueKind::filter) filters += (filters.empty() ? "" : ", ") + std::string(t.id);
+  bool any_filter = false, draws = false;
+  for (const TechniquePart& part : choice.parts) {
+    any_filter = any_filter || part.info->kind() == TechniqueKind::filter;
+    draws = draws || (part.info->kind() != TechniqueKind::filter && part.info->id != "none");
+  }
+  if (any_filter && !draws) return;
+  Problems problems;
+  add(problems, "T005", quoted(technique_text(choice)) + " draws a scene, and the input is an image", "",
+      "filters of images: " + filters);
+  throw InputError(std::move(problems), ExitStatus::usage);
+}
+
 pipeline::FrameGraph build_frame(const TechniqueChoice& choice, const FrameRequest& request) {
   FrameRequest modified = request;
   for (const TechniquePart& part : choice.parts)
     if (part.info->modify != nullptr) part.info->modify(modified, part.parameters);
   const TechniquePart& base = choice.base();
-  pipeline::FrameGraph graph = base.info->build(modified, base.parameters);
+  pipeline::FrameGraph graph =
+      request.image ? start_from_image(choice, request) : base.info->build(modified, base.parameters);
   for (const TechniquePart& part : choice.parts)
     if (part.info->filter != nullptr)
-      graph.set_output(part.info->filter(graph, graph.output(), part.parameters));
+      graph.set_output(part.info->filter(graph, graph.output(), part.parameters), Format::rgba8_srgb);
   return graph;
 }
 

@@ -42,6 +42,8 @@ struct FrameRequest {
   bool shadows = true;  ///< a shadow map for the scene's shadow caster
   int shadow_map_px = 2048;
   std::optional<WireOptions> wires;
+  /// Stands for the scene, which is empty then: sRGB codes of a finished frame. Only filters work on it.
+  std::shared_ptr<const pipeline::RawImage> image;
   GpuFeatures features;
   FunctionalConfig functional;
 };
@@ -67,7 +69,7 @@ struct TechniqueInfo {
   std::span<const ParameterInfo> parameters;
   pipeline::FrameGraph (*build)(const FrameRequest& request, const Parameters& parameters) = nullptr;
   void (*modify)(FrameRequest& request, const Parameters& parameters) = nullptr;
-  /// Returns the filtered image; `input` is the frame's, one sample a pixel.
+  /// Returns the filtered image; both hold sRGB codes, one sample a pixel (post_filters.h).
   pipeline::ImageId (*filter)(pipeline::FrameGraph& graph, pipeline::ImageId input,
                               const Parameters& parameters) = nullptr;
   /// Why it cannot go with another technique; empty: it can.
@@ -103,6 +105,9 @@ TechniqueChoice parse_technique(std::string_view text);
 /// A base `none` beside other parts is left out.
 std::string technique_text(const TechniqueChoice& choice, bool complete = false);
 std::string technique_text(const TechniquePart& part, bool complete = false);
+
+/// Throws InputError T005 unless the choice filters and draws nothing: what an image can be given to.
+void require_filters(const TechniqueChoice& choice);
 
 /// The frame graph of the combination.
 pipeline::FrameGraph build_frame(const TechniqueChoice& choice, const FrameRequest& request);

@@ -96,7 +96,7 @@ std::string check_simulation(const TemporaryFolder& folder) {
   options.view.resolution = Resolution{64, 64};
   options.techniques = {"none"};
   const RunPlan plan = make_run_plan(options);
-  LoadedScene loaded{std::make_shared<const pipeline::Scene>(pipeline::load_gltf(path)), 0};
+  LoadedScene loaded{std::make_shared<const pipeline::Scene>(pipeline::load_gltf(path)), 0, nullptr};
   std::vector<std::vector<glm::vec4>> images;
   std::uint64_t samples = 0;
   for (const int jobs : {1, 2}) {

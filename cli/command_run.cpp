@@ -8,6 +8,7 @@
 #include "cli/cache.h"
 #include "cli/commands.h"
 #include "cli/files.h"
+#include "cli/image_input.h"
 #include "cli/progress.h"
 #include "cli/run_files.h"
 
@@ -30,11 +31,14 @@ std::string plan_key(const RunPlan& plan, int jobs) {
 std::string plan_text(const RunPlan& plan, int jobs) {
   const size_t points = plan.techniques.size() * plan.gpus.size();
   std::string text = fmt::format(
-      "plan: {}, {} x {} = {}, {}x{}, engine {}, {} threads", plan.view.scene,
+      "plan: {}, {} x {} = {}, {}, engine {}, {} threads", plan.view.scene,
       plan.techniques.size() == 1 ? "1 technique" : fmt::format("{} techniques", plan.techniques.size()),
       plan.gpus.size() == 1 ? "1 GPU" : fmt::format("{} GPUs", plan.gpus.size()),
-      points == 1 ? "1 point" : fmt::format("{} points", points), plan.view.resolution.width_px,
-      plan.view.resolution.height_px, engine_name(plan.engine), jobs);
+      points == 1 ? "1 point" : fmt::format("{} points", points),
+      is_image_file(plan.view.scene)
+          ? "the image's size"
+          : fmt::format("{}x{}", plan.view.resolution.width_px, plan.view.resolution.height_px),
+      engine_name(plan.engine), jobs);
   if (plan.reference_samples > 0)
     text += fmt::format(", reference of {} samples a pixel", plan.reference_samples);
   if (const auto seconds = remembered_seconds(plan_key(plan, jobs)))
@@ -99,6 +103,7 @@ void Run::stage_progress(double done_ratio, const std::string& what) {
 
 void Run::load() {
   loaded_ = load_view(plan_.view);
+  if (loaded_.image) plan_.view.resolution = {loaded_.image->width, loaded_.image->height};
   for (const Diagnostic& note : loaded_.scene->notes) context_.log.report(note);
   if (plan_.reference_samples == 0) return;
   reference_ = make_reference(plan_.view, loaded_, plan_.reference_samples, options_.common.jobs,

@@ -33,6 +33,10 @@ constexpr ErrorCode kCodes[] = {
     {"U014", "no such help topic", "`hwsim help` takes the code of a message or the name of a command."},
     {"U015", "damaged CSV", "Every record of a CSV file must have as many fields as its header."},
     {"U016", "unknown name", "`hwsim show` takes the name of a GPU, scene, technique, counter or table."},
+    {"U030", "no meaning for an image",
+     "An image file in place of a scene has its own size, and neither camera nor lights; it is filtered as "
+     "it "
+     "is."},
     {"T001", "unknown technique",
      "`hwsim list techniques` lists the names; parameters follow after a colon."},
     {"T002", "unknown parameter of a technique",
@@ -44,6 +48,9 @@ constexpr ErrorCode kCodes[] = {
     {"T101", "lists overflowed",
      "Per-pixel lists had too little memory, or were longer than the resolve reads: the image is "
      "incomplete."},
+    {"T005", "an image is no scene",
+     "Techniques that draw need a scene. An image file stands for a finished frame: only filters apply to "
+     "it."},
     {"X001", "internal error",
      "hwsim broke one of its own rules. That is never your input's fault: please report the message and the "
      "manifest."},

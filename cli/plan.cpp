@@ -9,6 +9,7 @@
 #include "cli/argument_values.h"
 #include "cli/files.h"
 #include "cli/help_texts.h"
+#include "cli/image_input.h"
 #include "cli/messages.h"
 #include "cli/run_file.h"
 #include "cli/table.h"
@@ -71,7 +72,7 @@ std::string key_of(const Assignment& set) { return set.path.substr(set.path.find
 bool is_scene_file(const std::string& scene) {
   const auto dot = scene.rfind('.');
   const std::string ending = dot == std::string::npos ? "" : scene.substr(dot);
-  return ending == ".gltf" || ending == ".glb";
+  return ending == ".gltf" || ending == ".glb" || is_image_file(scene);
 }
 
 /// scene.* holds settings of the view and, for a generated scene, the generator's own parameters; the
@@ -104,6 +105,24 @@ ViewPlan plan_view(const ViewOptions& options, const std::vector<Assignment>& se
   plan.resolution = options.resolution.value_or(start.resolution);
   plan.camera = options.camera.value_or(start.camera);
   return plan;
+}
+
+/// Flags that say how a scene is seen, given with an image; and techniques that would have to draw it.
+void check_image_run(const RunOptions& options, const RunPlan& plan, std::vector<Diagnostic>& problems) {
+  const auto refuse = [&](bool given, const std::string& what) {
+    if (given)
+      problems.push_back(problem("U030", what + " has no meaning for the image `" + plan.view.scene + "`", "",
+                                 "an image is filtered as it is"));
+  };
+  refuse(options.view.resolution.has_value(), "--resolution");
+  refuse(options.view.camera.has_value(), "--camera");
+  refuse(options.view.point_lights.has_value(), "--point-lights");
+  refuse(plan.reference_samples > 0, "a ray-traced reference");
+  for (const algos::TechniqueChoice& choice : plan.techniques) try {
+      algos::require_filters(choice);
+    } catch (const InputError& error) {
+      append(problems, error);
+    }
 }
 
 Engine plan_engine(const std::string& name, std::vector<Diagnostic>& problems) {
@@ -262,6 +281,7 @@ RunPlan make_run_plan(const RunOptions& options) {
                         problems);
   plan.reference_samples = options.reference_samples.value_or(file.reference_samples);
   plan.images = !options.no_image;
+  if (is_image_file(plan.view.scene)) check_image_run(options, plan, problems);
   if (!problems.empty()) throw InputError(problems);
   return plan;
 }

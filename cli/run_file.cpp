@@ -10,6 +10,7 @@
 
 #include "cli/files.h"
 #include "cli/help_texts.h"
+#include "cli/image_input.h"
 #include "cli/messages.h"
 
 namespace hwsim::cli {
@@ -151,7 +152,8 @@ RunFile read_run_file(const std::string& path) {
   reader.take_count("reference_samples", file.reference_samples, 0, 65536);
   if (file.view.scene.empty()) reader.add("C015", "`scene` is missing", table.source());
   reader.finish();
-  file.view.scene = resolve(file.view.scene, path, {".gltf", ".glb"});
+  file.view.scene = is_image_file(file.view.scene) ? resolve(file.view.scene, path, {""})
+                                                   : resolve(file.view.scene, path, {".gltf", ".glb"});
   file.gpu = resolve(file.gpu, path, {".toml"});
   return file;
 }
@@ -159,7 +161,8 @@ RunFile read_run_file(const std::string& path) {
 std::string run_file_text(const RunPlan& plan, const algos::TechniqueChoice& technique,
                           const std::string& gpu_file) {
   const ViewPlan& view = plan.view;
-  const bool is_path = view.scene.ends_with(".gltf") || view.scene.ends_with(".glb");
+  const bool is_path =
+      view.scene.ends_with(".gltf") || view.scene.ends_with(".glb") || is_image_file(view.scene);
   return fmt::format(
       "schema = {}\nkind = \"run\"\nscene = {}\ntechnique = {}\ngpu = {}\nengine = {}\n"
       "width_px = {}\nheight_px = {}\ncamera = {}\npoint_lights = {}\nlights = {}\nshadows = "

@@ -5,8 +5,10 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <filesystem>
 
 #include "cli/cache.h"
+#include "cli/image_input.h"
 #include "cli/messages.h"
 #include "pipeline/scene/scene_source.h"
 
@@ -30,9 +32,21 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+LoadedScene load_image(const std::string& path) {
+  const ImageInput input = read_image_input(path);
+  pipeline::Scene scene;
+  scene.name = std::filesystem::path(path).stem().string();
+  scene.content_hash = input.content_hash;
+  LoadedScene loaded;
+  loaded.scene = std::make_shared<const pipeline::Scene>(std::move(scene));
+  loaded.image = input.texels;
+  return loaded;
+}
+
 }  // namespace
 
 LoadedScene load_view(const ViewPlan& view) {
+  if (is_image_file(view.scene)) return load_image(view.scene);
   LoadedScene loaded;
   loaded.scene = std::make_shared<const pipeline::Scene>(
       pipeline::open_scene(view.scene, cache_directory(CacheFolder::scenes)));
@@ -50,6 +64,7 @@ algos::FrameRequest frame_request(const ViewPlan& view, const LoadedScene& loade
   request.lights = view.lights;
   request.shadows = view.shadows;
   request.shadow_map_px = view.shadow_map_px;
+  request.image = loaded.image;
   return request;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cli/plan.h"
+#include "pipeline/image/image_io.h"
 #include "pipeline/image/metrics.h"
 
 namespace hwsim::cli {
@@ -22,6 +23,7 @@ class InternalError : public std::runtime_error {
 struct LoadedScene {
   std::shared_ptr<const pipeline::Scene> scene;
   int camera = 0;
+  std::shared_ptr<const pipeline::RawImage> image;  ///< stands for the scene, which is empty then
 };
 
 /// Loads the scene and finds the camera by name or index. Throws InputError.

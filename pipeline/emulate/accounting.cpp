@@ -101,8 +101,12 @@ void account_shading(const FragmentBatch& batch, const FragmentProgram& program,
   c.ps.helper_invocations += lanes - active;
   if (sample_rate) c.ps.sample_rate_invocations += active;
   c.ps.discarded_invocations += static_cast<std::uint64_t>(__builtin_popcountll(batch.discarded_lanes));
+  const std::uint64_t probes_before = c.tex.bilinear_probes;
   account_blocks(batch.blocks, program.ops, program.block_count, batch.valid_lanes, c);
   c.tex.bilinear_probes += batch.tex_bilinear_probes;
+  const std::uint64_t probes = c.tex.bilinear_probes - probes_before;
+  c.tex.texels += 4 * probes;
+  c.mem.texture_read_bytes += 16 * (probes - batch.image_probes);  // of textures: 32 bits a texel
   charge_texels(batch.image_texels, c);
   c.mem.texture_read_bytes += batch.image_read_bytes;
   c.mem.storage_read_bytes += batch.storage_read_bytes;

@@ -248,6 +248,45 @@ class BinDepth {
     return true;
   }
 
+  /// A full-screen triangle lies in one depth, which is tested before its program runs; the depth that a
+  /// program gives is written afterwards (conservative depth output). One sample a pixel.
+  bool test_full_screen_depth(int x, int y, SampleMasks& masks, PassCounters& n) {
+    const int block = c_.depth->block_index(x, y);
+    const auto index = static_cast<std::size_t>(block);
+    const Compare compare = w_.state->depth.compare;
+    const std::uint32_t z = depth_bits(c_.pass->full_screen_depth, c_.depth_scale);
+    const CoarseResult coarse =
+        compare_bounds(compare, z, z, c_.depth->depth_min[index], c_.depth->depth_max[index]);
+    n.hiz.tested_tiles += 1;
+    n.hiz.killed_tiles += coarse == CoarseResult::killed ? 1 : 0;
+    n.hiz.accepted_tiles += coarse == CoarseResult::accepted ? 1 : 0;
+    n.hiz.ambiguous_tiles += coarse == CoarseResult::ambiguous ? 1 : 0;
+    if (coarse == CoarseResult::killed) return false;
+    c_.depth->use(block);
+    touch_depth_tile(block);
+    const std::uint64_t tested = masks.count;
+    std::uint64_t passed = 0;
+    for (std::uint64_t lanes = masks.lanes[0]; lanes != 0; lanes &= lanes - 1) {
+      const int lane = __builtin_ctzll(lanes);
+      if (depth_passes(compare, z, c_.depth->block(block)[lane])) passed |= std::uint64_t{1} << lane;
+    }
+    masks.keep(passed, 0, samples_, samples_);
+    track_depth(block, tested, masks.count);
+    n.zrop.early_z_tested_samples += tested;
+    n.zrop.early_z_killed_samples += tested - masks.count;
+    count_depth_traffic(tested, masks.count, n);
+    return masks.count != 0;
+  }
+
+  void write_full_screen_depth(const FragmentBatch& batch, int block) {
+    for (std::uint64_t lanes = batch.active_lanes & ~batch.discarded_lanes; lanes != 0; lanes &= lanes - 1) {
+      const int lane = __builtin_ctzll(lanes);
+      c_.depth->block(block)[lane] = depth_bits(batch.depth[lane], c_.depth_scale);
+    }
+    read_bounds(*c_.depth, block);
+    c_.depth->unsaved[static_cast<std::size_t>(block)] = 1;
+  }
+
   // Late writes went past the tiles' bounds: read them anew.
   void refresh_bounds() {
     if (!w_.state->depth.write) return;

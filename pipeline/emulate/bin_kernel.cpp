@@ -48,6 +48,8 @@ class BinRunner : private BinShading {
     w_.uniforms = c_.pass->uniforms.get();
     w_.late_z = (w_.program->can_discard || w_.program->writes_mask) && w_.state->stencil.test;
     w_.early_reject = false;
+    w_.batch.stores = w_.sample_batch.stores = &w_.stores;
+    w_.batch.store_order = static_cast<std::uint64_t>(bin_y_ / kBinPx * c_.bins_x + bin_x_ / kBinPx) << 32;
     w_.batch.material = nullptr;
     start_batch();
     for (int y = bin_y_; y < std::min(bin_y_ + kBinPx, c_.height); y += kBlockPx)
@@ -182,7 +184,9 @@ class BinRunner : private BinShading {
     PassCounters& n = w_.counters();
     n.raster.visited_tiles += 1;
     n.raster.covered_samples += masks.count;
-    if (c_.depth != nullptr && w_.state->stencil.test && !w_.late_z) {
+    if (w_.state->depth.test) {
+      if (!test_full_screen_depth(x, y, masks, n)) return;
+    } else if (c_.depth != nullptr && w_.state->stencil.test && !w_.late_z) {
       const std::uint64_t tested = masks.count;
       test_tile(nullptr, nullptr, x, y, CoarseResult::ambiguous, masks);
       track_depth(c_.depth->block_index(x, y, layer_), tested, masks.count);

@@ -54,6 +54,7 @@ class BinShading : protected BinColor {
     set_up_tile(batch, x, y, centroid ? AttributeLocation::centroid : AttributeLocation::center, c_.positions,
                 0);
     shade(batch, false);
+    if (w_.program->writes_depth && w_.state->depth.write) write_full_screen_depth(batch, block);
     add_tile_heat(batch, x, y);
     if (batch.discarded_lanes == 0 && !w_.late_z && !masks_output_)
       return write_tile(batch, block, masks.lanes, 0, samples_);
@@ -82,6 +83,7 @@ class BinShading : protected BinColor {
     batch.material = w_.batch.material;
     batch.resources = w_.batch.resources;
     batch.layer = layer_;
+    batch.stores = w_.batch.stores;
     batch.quad_count = kBatchQuads;
     batch.triangle.fill(t);
     for (int quad = 0; quad < kQuadsPerBlock; ++quad) {
@@ -139,7 +141,7 @@ class BinShading : protected BinColor {
     const std::uint64_t any_sample = masks.any_lane;
     n.raster.fragments += popcount(any_sample);
     const int block = tile_number(x, y);
-    if (quads_of(any_sample) >= kTileQuads) {
+    if (quads_of(any_sample) >= kTileQuads || w_.program->writes_depth) {
       if (holds_tile(block)) flush();
       shade_tile(t, segment, item, x, y, block, masks, n);
       return;
@@ -282,8 +284,11 @@ class BinShading : protected BinColor {
 
   void shade(FragmentBatch& batch, bool sample_rate) {
     batch.discarded_lanes = 0;
+    w_.batch.store_order += kBatchLanes;  // lanes within
+    batch.store_order = w_.batch.store_order;
     batch.blocks.used = 0;
     batch.tex_bilinear_probes = 0;
+    batch.image_probes = 0;
     batch.image_texels = {};
     batch.image_read_bytes = 0;
     batch.storage_read_bytes = batch.storage_write_bytes = 0;

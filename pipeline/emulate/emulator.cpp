@@ -77,6 +77,8 @@ class FrameRunner {
       const ImageDesc& desc = graph_.images()[i];
       images_[i] =
           std::make_unique<GpuImage>(desc.format, desc.width, desc.height, desc.samples, desc.layers);
+      if (const RawImage* contents = graph_.contents({static_cast<int>(i)}))
+        upload_image(*contents, *images_[i]);
     }
     for (std::size_t i = 0; i < buffers_.size(); ++i)
       if (compiled_.buffers[i].first_pass == position) {
@@ -177,10 +179,12 @@ class FrameRunner {
     for (std::size_t i = 0; i < pass.sampled.size(); ++i) {
       image(pass.sampled[i]).use_all(options_.jobs);
       resources.images[i] = &image(pass.sampled[i]);
+      resources.formats[i] = pass.view_of(graph_, i);
     }
     for (std::size_t i = 0; i < pass.targets.size() && i < resources.targets.size(); ++i) {
       image(pass.targets[i]).use_all(options_.jobs);
       resources.targets[i] = &image(pass.targets[i]);
+      resources.target_formats[i] = pass.target_view_of(graph_, i);
     }
     for (std::size_t i = 0; i < pass.storage.size(); ++i) {
       std::vector<std::uint32_t>& words = buffers_[static_cast<std::size_t>(pass.storage[i].index)];
@@ -294,10 +298,6 @@ class FrameRunner {
     work.chunks.assign(workers_.front().chunks.size(), PassCounters{});
     for (const BinWorker& worker : workers_)
       for (std::size_t i = 0; i < work.chunks.size(); ++i) work.chunks[i] += worker.chunks[i];
-    for (PassCounters& n : work.chunks) {
-      n.tex.texels += 4 * n.tex.bilinear_probes;
-      n.mem.texture_read_bytes += 16 * n.tex.bilinear_probes;
-    }
     work.reuse = merge_reuse(work);
     if (!pass.storage.empty()) share_same_address(work);
   }
@@ -426,7 +426,20 @@ class FrameRunner {
       w.current_chunk = static_cast<std::uint32_t>(bin * bands / bins);
       run_full_screen_bin(c, static_cast<int>(bin), w);
     });
+    apply_stores(c.resources);
     finish_workers(pass, work);
+  }
+
+  void apply_stores(const ResourceView& resources) {
+    std::vector<ImageStore> stores;
+    for (BinWorker& worker : workers_) {
+      stores.insert(stores.end(), worker.stores.begin(), worker.stores.end());
+      worker.stores.clear();
+    }
+    std::stable_sort(stores.begin(), stores.end(), [](const ImageStore& a, const ImageStore& b) {
+      return a.target != b.target ? a.target < b.target : a.order < b.order;
+    });
+    for (const ImageStore& store : stores) resources.targets[store.target]->texels[store.texel] = store.word;
   }
 
   void run_compute(const Pass& pass, PassWork& work) {
@@ -480,7 +493,7 @@ class FrameRunner {
   Image read_output() {
     GpuImage& from = image(graph_.output());
     from.use_all(options_.jobs);
-    return to_linear_image(from, options_.jobs);
+    return to_linear_image(from, graph_.output_view(), options_.jobs);
   }
 
   Image read_heat() const {

@@ -2,6 +2,7 @@
 // Up to 16 quads on their way through a fragment shader: 64 lanes, four for each quad.
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "hwsim/counters.h"
 #include "pipeline/emulate/access_tracker.h"
@@ -39,7 +40,9 @@ struct MaterialView {
 /// Image and buffer slots of a pass.
 struct ResourceView {
   std::array<const GpuImage*, kMaxImageSlots> images{};
-  std::array<GpuImage*, kMaxColorTargets> targets{};  ///< compute passes: images to store to
+  std::array<Format, kMaxImageSlots> formats{};  ///< as programs read them
+  std::array<GpuImage*, kMaxColorTargets> targets{};      ///< images that programs store to
+  std::array<Format, kMaxColorTargets> target_formats{};        ///< as they store to them
   std::array<std::uint32_t*, kMaxBufferSlots> buffers{};
   std::array<std::uint64_t, kMaxBufferSlots> buffer_words{};
   const MaterialView* materials = nullptr;                       ///< of the scene, in its order
@@ -60,6 +63,14 @@ struct TexelCounts {
   void add(std::uint64_t texels, int bytes_per_texel) {
     (bytes_per_texel <= 4 ? bits32 : bytes_per_texel <= 8 ? bits64 : bits128) += texels;
   }
+};
+
+/// A texel that a fragment program stores to a target of its pass. Stores take effect when the pass ends,
+/// target by target, in the order of screen bins, batches and lanes: so the last one does not depend on
+/// threads.
+struct ImageStore {
+  std::uint64_t order = 0;  ///< bin, batch, lane
+  std::uint32_t target = 0, texel = 0, word = 0;
 };
 
 struct FragmentBatch {
@@ -88,14 +99,19 @@ struct FragmentBatch {
   const ResourceView* resources = nullptr;
   PassCounters* counters = nullptr;  ///< of the current chunk
 
+  std::vector<ImageStore>* stores = nullptr;  ///< of the worker
+  std::uint64_t store_order = 0;              ///< of the batch, with room for the lane
+
   // Results
+  alignas(64) float depth[kBatchLanes];  ///< of programs that write it
   alignas(64) float color[kMaxColorTargets][4][kBatchLanes];
   alignas(64) std::array<std::uint32_t, kBatchLanes> output_mask;  ///< of programs that write one
   std::uint64_t discarded_lanes = 0;
   BlockTrips blocks;
   std::uint64_t tex_bilinear_probes = 0;  ///< beyond the first of each request
+  std::uint64_t image_probes = 0;         ///< filtered requests to the pass's images
   TexelCounts image_texels;               ///< unfiltered texels loaded from the pass's images
-  std::uint64_t image_read_bytes = 0;     ///< their bytes
+  std::uint64_t image_read_bytes = 0;     ///< of both
   std::uint64_t storage_read_bytes = 0, storage_write_bytes = 0;  ///< of the pass's buffers
 };
 

@@ -52,6 +52,7 @@ struct BinWorker {
   ResourceView resources;  ///< of the pass, with the trackers of this worker
   AccessTracker tracker;
   std::unique_ptr<GeometryBatch> geometry_batch;  ///< made where a geometry shader runs
+  std::vector<ImageStore> stores;
   std::vector<PassCounters> chunks;
   std::uint32_t current_chunk = 0;
   std::uint64_t accepted_tiles_skipped = 0;

@@ -57,12 +57,12 @@ void resolve_depth_block(const GpuImage& from, GpuImage& to, int block) {
 }
 
 /// Sample 0 of a tile, decoded: rgba[channel][lane].
-void decode_block(const GpuImage& from, int block, float (&rgba)[4][kBlockLanes]) {
+void decode_block(const GpuImage& from, Format format, int block, float (&rgba)[4][kBlockLanes]) {
   const auto* source = reinterpret_cast<const std::int32_t*>(from.block(block));
   for (int first = 0; first < kBlockLanes; first += kVectorLanes) {
     LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
     for (int w = 0; w < from.words; ++w) words[w] = load(source + w * kBlockLanes + first);
-    const Vec4<LaneF> c = decode_texel<LaneF, LaneI>(from.format, words, srgb_decode_table().data());
+    const Vec4<LaneF> c = decode_texel<LaneF, LaneI>(format, words, srgb_decode_table().data());
     store(c.x, rgba[0] + first);
     store(c.y, rgba[1] + first);
     store(c.z, rgba[2] + first);
@@ -79,13 +79,13 @@ HWY_EXPORT(resolve_block);
 HWY_EXPORT(resolve_depth_block);
 HWY_EXPORT(decode_block);
 
-Image to_linear_image(const GpuImage& from, int jobs) {
+Image to_linear_image(const GpuImage& from, Format format, int jobs) {
   Image out(from.width, from.height);
   const auto decode = HWY_DYNAMIC_DISPATCH(decode_block);
   parallel_for(static_cast<std::size_t>(from.blocks_y), jobs, [&](std::size_t row, int) {
     float rgba[4][kBlockLanes];
     for (int bx = 0; bx < from.blocks_x; ++bx) {
-      decode(from, static_cast<int>(row) * from.blocks_x + bx, rgba);
+      decode(from, format, static_cast<int>(row) * from.blocks_x + bx, rgba);
       for (int lane = 0; lane < kBlockLanes; ++lane) {
         const int x = bx * kBlockPx + lane_x(lane), y = static_cast<int>(row) * kBlockPx + lane_y(lane);
         if (x < out.width && y < out.height)
@@ -94,6 +94,14 @@ Image to_linear_image(const GpuImage& from, int jobs) {
     }
   });
   return out;
+}
+
+void upload_image(const RawImage& contents, GpuImage& image) {
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      image.texels[image.word_index(x, y, 0, 0)] =
+          contents.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                          static_cast<std::size_t>(x)];
 }
 
 void clear_image(GpuImage& image, const Pass& pass) {

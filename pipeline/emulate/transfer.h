@@ -14,8 +14,11 @@ void copy_image(const GpuImage& from, GpuImage& to);
 /// The mean of all samples, taken in linear light; sums are in sample order.
 void resolve_image(const GpuImage& from, GpuImage& to, int jobs);
 
-/// Sample 0 of every pixel, decoded to linear RGBA.
-Image to_linear_image(const GpuImage& from, int jobs);
+/// Sample 0 of every pixel, decoded from `format` to linear RGBA.
+Image to_linear_image(const GpuImage& from, Format format, int jobs);
+
+/// Texels as they are.
+void upload_image(const RawImage& contents, GpuImage& image);
 
 /// Work of a transfer, in a chunk for each band of tiles.
 std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* source,

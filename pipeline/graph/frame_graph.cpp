@@ -24,8 +24,26 @@ std::shared_ptr<const IndexList> make_index_list(std::vector<std::uint32_t> indi
   return list;
 }
 
-ImageId FrameGraph::add_image(ImageDesc desc) {
+bool same_bits(Format a, Format b) {
+  const auto is_rgba8 = [](Format f) { return f == Format::rgba8_unorm || f == Format::rgba8_srgb; };
+  return a == b || (is_rgba8(a) && is_rgba8(b));
+}
+
+Format Pass::view_of(const FrameGraph& graph, std::size_t slot) const {
+  const Format view = slot < views.size() ? views[slot] : Format::none;
+  return view == Format::none ? graph.image(sampled.at(slot)).format : view;
+}
+
+Format Pass::target_view_of(const FrameGraph& graph, std::size_t slot) const {
+  const Format view = slot < target_views.size() ? target_views[slot] : Format::none;
+  return view == Format::none ? graph.image(targets.at(slot)).format : view;
+}
+
+ImageId FrameGraph::add_image(ImageDesc desc) { return add_image(std::move(desc), nullptr); }
+
+ImageId FrameGraph::add_image(ImageDesc desc, std::shared_ptr<const RawImage> contents) {
   images_.push_back(std::move(desc));
+  contents_.push_back(std::move(contents));
   return {static_cast<int>(images_.size()) - 1};
 }
 

@@ -13,6 +13,7 @@
 #include "hwsim/format.h"
 #include "hwsim/work_trace.h"
 #include "pipeline/graph/pipeline_state.h"
+#include "pipeline/image/image_io.h"
 #include "pipeline/scene/scene.h"
 #include "pipeline/shade/program.h"
 
@@ -43,6 +44,10 @@ struct BufferDesc {
   /// Scene data that is there before the frame, as meshes and textures are: it is none of the frame's memory.
   std::shared_ptr<const std::vector<std::uint32_t>> contents = nullptr;
 };
+
+/// Formats of the same bits, between which views and copies are free: the sRGB codes of an image as they are,
+/// or decoded.
+bool same_bits(Format a, Format b);
 
 /// Bytes as allocated: width * height * samples * layers * bytes per element. No padding: the papers' figures
 /// have none.
@@ -82,6 +87,7 @@ struct DrawBatch {
 };
 
 enum class ResolveMode { average, max };
+class FrameGraph;
 
 struct Pass {
   std::string name;
@@ -95,8 +101,9 @@ struct Pass {
   std::vector<ImageId> color;  ///< attachments of draw and full-screen passes
   ImageId depth;
   bool depth_read_only = false;
-  std::vector<ImageId> sampled;       ///< images that shaders read, in the order of their slots
-  std::vector<BufferId> storage;      ///< buffers that shaders read or write, in the order of their slots
+  std::vector<ImageId> sampled;   ///< images that shaders read, in the order of their slots
+  std::vector<Format> views;      ///< as which shaders read `sampled`; missing or none: the image's format
+  std::vector<BufferId> storage;  ///< buffers that shaders read or write, in the order of their slots
   std::uint64_t storage_written = 0;  ///< bit i: storage[i] is written
 
   std::vector<DrawBatch> batches;  // draw
@@ -106,13 +113,20 @@ struct Pass {
   int groups_x = 0, groups_y = 0;        // compute
   std::shared_ptr<const void> uniforms;  // full_screen and compute
 
-  std::vector<ImageId> targets;                ///< clear: images; copy and resolve: the destination
-  ImageId source;                              ///< copy and resolve
+  std::vector<ImageId> targets;  ///< clear: images; copy and resolve: the destination; full-screen and
+                                 ///< compute: images that shaders store to
+  ImageId source;  ///< copy and resolve
   ResolveMode resolve = ResolveMode::average;  ///< depth: max
   glm::vec4 clear_color{0.0f};
   float clear_depth = 1.0f;
   std::uint8_t clear_stencil = 0;
-  bool keep = false;  ///< never culled: a simulated workload without output
+  std::vector<Format>
+      target_views;  ///< as which shaders store to `targets`; missing or none: the image's format
+  float full_screen_depth = 0.0f;  ///< of the triangle that covers the screen
+  bool keep = false;               ///< never culled: a simulated workload without output
+
+  Format view_of(const FrameGraph& graph, std::size_t slot) const;
+  Format target_view_of(const FrameGraph& graph, std::size_t slot) const;
 };
 
 class FrameGraph {
@@ -121,17 +135,29 @@ class FrameGraph {
       : scene_(std::move(scene)), width_(width), height_(height) {}
 
   ImageId add_image(ImageDesc desc);
+  /// An image that is in memory before the frame starts: a table, or what a filter is to work on. Formats of
+  /// one 32-bit word a texel.
+  ImageId add_image(ImageDesc desc, std::shared_ptr<const RawImage> contents);
   BufferId add_buffer(BufferDesc desc);
   Pass& add_pass(std::string name, PassKind kind);
   Pass& add_clear(std::string name, std::vector<ImageId> targets, glm::vec4 color = glm::vec4(0.0f));
   Pass& add_resolve(std::string name, ImageId source, ImageId target);
-  void set_output(ImageId image) { output_ = image; }
+  /// What is presented, read as `view`; none: the image's format.
+  void set_output(ImageId image, Format view = Format::none) {
+    output_ = image;
+    output_view_ = view;
+  }
 
   const Scene& scene() const { return *scene_; }
   std::shared_ptr<const Scene> shared_scene() const { return scene_; }
   int width() const { return width_; }
   int height() const { return height_; }
   ImageId output() const { return output_; }
+  Format output_view() const { return output_view_ == Format::none ? image(output_).format : output_view_; }
+  /// Null: nothing before a pass writes it.
+  const RawImage* contents(ImageId id) const {
+    return contents_.at(static_cast<std::size_t>(id.index)).get();
+  }
   const ImageDesc& image(ImageId id) const { return images_.at(static_cast<std::size_t>(id.index)); }
   const BufferDesc& buffer(BufferId id) const { return buffers_.at(static_cast<std::size_t>(id.index)); }
   std::span<const ImageDesc> images() const { return images_; }
@@ -142,7 +168,9 @@ class FrameGraph {
   std::shared_ptr<const Scene> scene_;
   int width_, height_;
   ImageId output_;
+  Format output_view_ = Format::none;
   std::vector<ImageDesc> images_;
+  std::vector<std::shared_ptr<const RawImage>> contents_;  ///< of each image
   std::vector<BufferDesc> buffers_;
   std::vector<Pass> passes_;
 };

@@ -20,6 +20,7 @@ class Validator {
   std::vector<Diagnostic> run() {
     for (const ImageDesc& image : graph_.images()) check_image(image);
     if (!errors_.empty()) return std::move(errors_);
+    for (std::size_t i = 0; i < written_.size(); ++i) check_contents({static_cast<int>(i)});
     for (const Pass& pass : graph_.passes()) check_pass(pass);
     check_output();
     return std::move(errors_);
@@ -56,9 +57,29 @@ class Validator {
            "gpu.features.native_msaa_max = " + std::to_string(s) + " makes it native");
   }
 
+  void check_contents(ImageId id) {
+    const RawImage* contents = graph_.contents(id);
+    if (contents == nullptr) return;
+    const ImageDesc& image = graph_.image(id);
+    if (image.samples != 1 || contents->width != image.width || contents->height != image.height ||
+        info(image.format).bytes > 4 || info(image.format).is_depth)
+      fail("G009", "image " + text(image) + " is given contents of " + std::to_string(contents->width) + "x" +
+                       std::to_string(contents->height) + " texels of 32 bits");
+    mark_written(id);
+  }
+
+  void check_views(const Pass& pass) {
+    for (std::size_t slot = 0; slot < pass.sampled.size(); ++slot)
+      if (const Format view = pass.view_of(graph_, slot);
+          !same_bits(view, graph_.image(pass.sampled[slot]).format))
+        fail("G003", "pass `" + pass.name + "` reads image " + text(graph_.image(pass.sampled[slot])) +
+                         " as " + std::string(info(view).name));
+  }
+
   void check_pass(const Pass& pass) {
     check_slots(pass);
     for (const ImageId id : pass.sampled) check_read(pass, id);
+    check_views(pass);
     if (pass.source) check_read(pass, pass.source);
     switch (pass.kind) {
       case PassKind::draw:
@@ -148,6 +169,7 @@ class Validator {
       mark_written(id);
     }
     if (pass.depth) check_depth(pass);
+    check_stores(pass);
     if (pass.kind == PassKind::full_screen) {
       if (pass.fragment == nullptr)
         fail("G007", "full-screen pass `" + pass.name + "` has no fragment program");
@@ -164,6 +186,26 @@ class Validator {
       fail("G002", message, "give the color image as many samples as the pass rasterizes, or a divisor");
     else if (!features_.target_independent_raster)
       fail("G006", message + ", which this GPU cannot", "gpu.features.target_independent_raster = true");
+  }
+
+  void check_stores(const Pass& pass) {
+    if (!pass.targets.empty() && pass.kind == PassKind::draw)
+      fail("G007",
+           "pass `" + pass.name + "` stores to images, which only full-screen and compute passes can");
+    for (std::size_t slot = 0; slot < pass.targets.size(); ++slot) {
+      const ImageDesc& image = graph_.image(pass.targets[slot]);
+      if (image.samples != 1 || info(image.format).bytes > 4 || info(image.format).is_depth ||
+          !same_bits(pass.target_view_of(graph_, slot), image.format))
+        fail("G003", "pass `" + pass.name + "` stores to image " + text(image) + " as " +
+                         std::string(info(pass.target_view_of(graph_, slot)).name));
+      if (std::find(pass.sampled.begin(), pass.sampled.end(), pass.targets[slot]) != pass.sampled.end())
+        fail("G004", "pass `" + pass.name + "` reads image " + text(image) + " while it stores to it");
+      mark_written(pass.targets[slot]);
+    }
+    const bool writes = pass.kind == PassKind::full_screen && pass.state.depth.write;
+    if (writes && (pass.fragment == nullptr || !pass.fragment->writes_depth || pass.samples != 1))
+      fail("G007",
+           "full-screen pass `" + pass.name + "` writes depth, which its program must give, at one sample");
   }
 
   void check_size(const Pass& pass, const ImageDesc& image) {
@@ -337,7 +379,7 @@ class Validator {
                (info(from.format).is_depth != (pass.resolve == ResolveMode::max)))
         fail("G003",
              "pass `" + pass.name + "` resolves image " + text(from) + ", whose values cannot be averaged");
-    } else if (from.samples != to.samples || from.format != to.format) {
+    } else if (from.samples != to.samples || !same_bits(from.format, to.format)) {
       fail("G009", "pass `" + pass.name + "` copies image " + text(from) + " to image " + text(to) +
                        ": formats and sample counts must be equal");
     }
@@ -352,6 +394,9 @@ class Validator {
     const ImageDesc& image = graph_.image(graph_.output());
     if (image.samples != 1 || image.layers != 1)
       fail("G008", "output image " + text(image) + " is multisampled or has layers", "resolve it first");
+    if (!same_bits(graph_.output_view(), image.format))
+      fail("G003",
+           "output image " + text(image) + " is shown as " + std::string(info(graph_.output_view()).name));
     if (info(image.format).is_depth) fail("G008", "output image " + text(image) + " has a depth format");
     if (written_[static_cast<std::size_t>(graph_.output().index)] == 0)
       fail("G005", "no pass writes the output image " + text(image));

@@ -39,7 +39,7 @@ class ComputeLanes : public LaneFlow {
     charge_texels(texels, *group_.counters);
     group_.counters->mem.texture_read_bytes += lanes * info(image.format).bytes;
     track_texels(*group_.resources, slot, x, y, sample, mask_bits(live_), first_);
-    return load_texel(image, x, y, sample);
+    return load_texel(image, group_.resources->formats[static_cast<std::size_t>(slot)], x, y, sample);
   }
 
   /// As FragmentLanes'.
@@ -120,25 +120,13 @@ class ComputeLanes : public LaneFlow {
       for (int w = 0; w < image.words; ++w)
         image.texels[image.word_index(px[lane], py[lane], ps[lane], w)] =
             static_cast<std::uint32_t>(words[w][lane]);
-      note_store(image, target, lane, image.word_index(px[lane], py[lane], ps[lane], 0));
+      note_store(*group_.resources, target, first_ + lane, image.word_index(px[lane], py[lane], ps[lane], 0));
     }
     group_.counters->mem.storage_write_bytes +=
         static_cast<std::uint64_t>(__builtin_popcount(bits)) * info(image.format).bytes;
   }
 
  private:
-  /// Images that are stored to are numbered behind the buffers; a sample's tile is as many lines as a texel
-  /// has bytes.
-  void note_store(const GpuImage& image, int target, int lane, std::size_t first_word) const {
-    const auto bytes = static_cast<std::uint32_t>(info(image.format).bytes);
-    const auto texel = static_cast<std::uint32_t>(first_word % kBlockLanes);
-    const auto tile =
-        static_cast<std::uint32_t>(first_word / kBlockLanes / static_cast<std::size_t>(image.words));
-    group_.resources->tracker->use_if_sampled(
-        (first_ + lane) / 4, ReuseStream::storage,
-        buffer_line(kMaxBufferSlots + target, 0) + tile * bytes + texel * bytes / kLineBytes, 0, bytes);
-  }
-
   std::uint8_t* group_bytes() const { return reinterpret_cast<std::uint8_t*>(group_.group_memory); }
   template <class Body>
   HWY_INLINE void for_each_group_byte(I address, I value, M mask, Body&& body) {

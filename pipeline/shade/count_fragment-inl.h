@@ -66,6 +66,9 @@ class CountFragment {
   I load_group_byte(I address, M mask) { return I(made(OpKind::group_memory, address, mask)); }
   void store_group_byte(I address, I value, M mask) { made(OpKind::group_memory, address, value, mask); }
   void add_group_byte(I address, I value, M mask) { made(OpKind::group_memory, address, value, mask); }
+  Vec4<F> sample_image(int, F x, F y) { return four(made(OpKind::texture, x, y)); }
+  int target_width(int) const { return 1; }
+  int target_height(int) const { return 1; }
   int image_width(int) const { return 1; }
   int image_height(int) const { return 1; }
 
@@ -109,7 +112,14 @@ class CountFragment {
     made(OpKind::output, color.w, sample, mask);
     made(OpKind::store, x, y);
   }
-  void discard(M mask) { made(OpKind::alu, mask); }
+  void output_depth(F depth) {
+    made(OpKind::output, depth);
+    writes_depth_ = true;
+  }
+  void discard(M mask) {
+    made(OpKind::alu, mask);
+    can_discard_ = true;
+  }
   void output_mask(I mask) {
     made(OpKind::output, mask);
     writes_mask_ = true;
@@ -125,6 +135,8 @@ class CountFragment {
   int color_outputs() const { return color_outputs_; }
   bool writes_storage() const { return writes_storage_; }
   bool ordered_storage() const { return ordered_storage_; }
+  bool writes_depth() const { return writes_depth_; }
+  bool can_discard() const { return can_discard_; }
   bool reads_coverage() const { return reads_coverage_; }
   bool writes_mask() const { return writes_mask_; }
 
@@ -152,6 +164,8 @@ class CountFragment {
   MaterialView material_;
   OpRecorder recorder_;
   int color_outputs_ = 0;
+  bool can_discard_ = false;
+  bool writes_depth_ = false;
   bool reads_coverage_ = false;
   bool writes_storage_ = false;
   bool writes_mask_ = false;
@@ -170,6 +184,8 @@ FragmentProgram describe_fragment_shader(std::string name, void (*run)(FragmentB
   program.ops = counter.blocks();
   program.block_count = counter.block_count();
   program.color_outputs = counter.color_outputs();
+  program.can_discard = counter.can_discard();
+  program.writes_depth = counter.writes_depth();
   program.reads_coverage = counter.reads_coverage();
   program.writes_storage = counter.writes_storage();
   program.writes_mask = counter.writes_mask();

@@ -30,13 +30,13 @@ HWY_INLINE LaneI texel_index(const GpuImage& image, LaneI x, LaneI y, LaneI samp
          shift_left<6>(sample * LaneI(image.words)) + lane;
 }
 
-HWY_INLINE Vec4<LaneF> load_texel(const GpuImage& image, LaneI x, LaneI y, LaneI sample) {
+HWY_INLINE Vec4<LaneF> load_texel(const GpuImage& image, Format format, LaneI x, LaneI y, LaneI sample) {
   const LaneI first = texel_index(image, x, y, sample);
   LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
   const auto* texels = reinterpret_cast<const std::int32_t*>(image.texels.data());
   for (int word = 0; word < image.words; ++word)
     words[word] = gather(texels, first + LaneI(word * kBlockLanes));
-  return decode_texel<LaneF, LaneI>(image.format, words, srgb_decode_table().data());
+  return decode_texel<LaneF, LaneI>(format, words, srgb_decode_table().data());
 }
 
 /// Notes the lines of texels of the pass's image slot, as load_texel reads them: a line is a rectangle of a
@@ -64,6 +64,20 @@ HWY_INLINE LaneI load_texel_int(const GpuImage& image, int channel, LaneI x, Lan
   return gather(reinterpret_cast<const std::int32_t*>(image.texels.data()),
                 texel_index(image, x, y, sample) + LaneI(channel * kBlockLanes));
 }
+
+/// Notes a texel stored to the pass's target: those images are numbered behind the buffers; a sample's tile
+/// is as many lines as a texel has bytes.
+inline void note_store(const ResourceView& resources, int target, int lane, std::size_t first_word) {
+  const GpuImage& image = *resources.targets[static_cast<std::size_t>(target)];
+  const auto bytes = static_cast<std::uint32_t>(info(image.format).bytes);
+  const auto texel = static_cast<std::uint32_t>(first_word % kBlockLanes);
+  const auto tile =
+      static_cast<std::uint32_t>(first_word / kBlockLanes / static_cast<std::size_t>(image.words));
+  resources.tracker->use_if_sampled(
+      lane / 4, ReuseStream::storage,
+      buffer_line(kMaxBufferSlots + target, 0) + tile * bytes + texel * bytes / kLineBytes, 0, bytes);
+}
+
 
 class FragmentLanes : public LaneFlow {
  public:
@@ -136,12 +150,19 @@ class FragmentLanes : public LaneFlow {
 
   /// Texel (x, y) of the pass's image slot, unfiltered; coordinates are clamped to the image.
   Vec4<F> load_image(int slot, I x, I y, I sample) {
-    const GpuImage& image = *batch_.resources->images[static_cast<std::size_t>(slot)];
-    const auto lanes = static_cast<std::uint64_t>(__builtin_popcount(mask_bits(live_)));
-    batch_.image_texels.add(lanes, info(image.format).bytes);
-    batch_.image_read_bytes += lanes * info(image.format).bytes;
-    track_texels(*batch_.resources, slot, x, y, sample, mask_bits(live_), first_);
-    return load_texel(image, x, y, sample);
+    batch_.image_texels.add(live_count(), image_bytes(slot));
+    return read_texel(slot, x, y, sample);
+  }
+  /// Bilinear, clamped to the edge; coordinates in texels, centers at one half.
+  Vec4<F> sample_image(int slot, F x, F y) {
+    batch_.image_probes += live_count();
+    const F left = floor(x - F(0.5f)), top = floor(y - F(0.5f));
+    const F fx = x - F(0.5f) - left, fy = y - F(0.5f) - top;
+    const I x0 = to_int(left), y0 = to_int(top), x1 = x0 + I(1), y1 = y0 + I(1);
+    const Vec4<F> c00 = read_texel(slot, x0, y0, I(0)), c10 = read_texel(slot, x1, y0, I(0));
+    const Vec4<F> c01 = read_texel(slot, x0, y1, I(0)), c11 = read_texel(slot, x1, y1, I(0));
+    const Vec4<F> upper = c00 + (c10 - c00) * fx, lower = c01 + (c11 - c01) * fx;
+    return upper + (lower - upper) * fy;
   }
   /// As load_image, all channels of an integer format by one load.
   template <int kChannels>
@@ -184,6 +205,37 @@ class FragmentLanes : public LaneFlow {
     return BufferAccess(*batch_.resources, slot, first_).holds_nonzero(index, mask & active_);
   }
 
+  /// To the pass's target, which holds it when the pass has ended; coordinates are inside the image.
+  void store_image(int target, I x, I y, I sample, const Vec4<F>& color, M mask) {
+    const auto at = static_cast<std::size_t>(target);
+    const GpuImage& image = *batch_.resources->targets[at];
+    I encoded[4] = {I(0), I(0), I(0), I(0)};
+    encode_texel<F, I>(batch_.resources->target_formats[at], color, encoded);
+    HWY_ALIGN std::int32_t word[kVectorLanes], px[kVectorLanes], py[kVectorLanes], ps[kVectorLanes];
+    store(encoded[0], word);
+    store(x, px);
+    store(y, py);
+    store(sample, ps);
+    const std::uint32_t bits = mask_bits(mask & live_ & active_);
+    for (std::uint32_t rest = bits; rest != 0; rest &= rest - 1) {
+      const int lane = __builtin_ctz(rest);
+      note_store(*batch_.resources, target, first_ + lane, image.word_index(px[lane], py[lane], ps[lane], 0));
+      batch_.stores->push_back({batch_.store_order + static_cast<std::uint64_t>(first_ + lane),
+                                static_cast<std::uint32_t>(target),
+                                static_cast<std::uint32_t>(image.word_index(px[lane], py[lane], ps[lane], 0)),
+                                static_cast<std::uint32_t>(word[lane])});
+    }
+    batch_.storage_write_bytes += static_cast<std::uint64_t>(__builtin_popcount(bits)) *
+                                  static_cast<std::uint64_t>(info(image.format).bytes);
+  }
+  void output_depth(F depth) { store(depth, batch_.depth + first_); }
+
+  int target_width(int target) const {
+    return batch_.resources->targets[static_cast<std::size_t>(target)]->width;
+  }
+  int target_height(int target) const {
+    return batch_.resources->targets[static_cast<std::size_t>(target)]->height;
+  }
   int image_width(int slot) const { return batch_.resources->images[static_cast<std::size_t>(slot)]->width; }
   int image_height(int slot) const {
     return batch_.resources->images[static_cast<std::size_t>(slot)]->height;
@@ -204,6 +256,22 @@ class FragmentLanes : public LaneFlow {
   }
 
  private:
+  std::uint64_t live_count() const {
+    return static_cast<std::uint64_t>(__builtin_popcount(mask_bits(live_)));
+  }
+
+  int image_bytes(int slot) const {
+    return info(batch_.resources->images[static_cast<std::size_t>(slot)]->format).bytes;
+  }
+
+  Vec4<F> read_texel(int slot, I x, I y, I sample) {
+    const auto at = static_cast<std::size_t>(slot);
+    const GpuImage& image = *batch_.resources->images[at];
+    batch_.image_read_bytes += live_count() * static_cast<std::uint64_t>(image_bytes(slot));
+    track_texels(*batch_.resources, slot, x, y, sample, mask_bits(live_), first_);
+    return load_texel(image, batch_.resources->formats[at], x, y, sample);
+  }
+
   F interpolate(int k, const float* b1, const float* b2) const {
     const auto first_quad = static_cast<std::size_t>(first_ / 4);
     if (one_triangle_) {

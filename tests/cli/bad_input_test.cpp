@@ -21,6 +21,7 @@ class BadInput : public testing::TestWithParam<Mistake> {};
 TEST_P(BadInput, EndsInItsStatusAndMessageAndWritesNothing) {
   const Workplace place;
   place.write("triangle.gltf", kTriangleGltf);
+  place.write("bad.png", "not a picture");
   place.write("cut.glb", std::string("glTF\2\0\0\0\377\0\0\0", 12));
   place.write("bad.toml",
               "schema = 1\nkind = \"gpu\"\nid = \"bad\"\nextends = \"gtx980\"\ncore_clock_mzh = 1000\n");
@@ -53,6 +54,11 @@ const Mistake kMistakes[] = {
     {"BadSamples", "run triangle.gltf --reference 0", 2, "U003", "--reference"},
     {"ListNothing", "list gpu", 2, "U003", "did you mean `gpus`"},
     {"HelpOnNothing", "help Z999", 2, "U014", "Z999"},
+    {"TwoBases", "run triangle.gltf -t msaa4x+deferred", 3, "T004", "each draws the whole frame"},
+    {"NoImageInAnImageFile", "run bad.png -t fxaa", 3, "I006", "bad.png"},
+    {"MissingImage", "run missing.png -t fxaa", 3, "U011", "missing.png"},
+    {"ImageIsNoScene", "run bad.png -t msaa4x+fxaa", 3, "T005", "filters of images: fxaa"},
+    {"ImageHasItsSize", "run bad.png -t fxaa --resolution 64x48", 3, "U030", "--resolution"},
     {"UnknownTechnique", "run triangle.gltf -t msaa5x", 3, "T001", "did you mean `msaa"},
     {"UnknownGpu", "run triangle.gltf -g gtx981", 3, "C016", "gtx980"},
     {"UnknownScene", "run sponza_hal", 3, "S201", "sponza_hall"},

@@ -25,6 +25,25 @@ void expect_keys(const json& object, std::initializer_list<const char*> keys) {
   for (const char* key : keys) EXPECT_TRUE(object.contains(key)) << key;
 }
 
+TEST_F(RunTest, ImageFilesAreFiltered) {
+  ASSERT_EQ(run("-t none --out drawn").status, 0);
+  const Outcome drawn = run("-t fxaa --out both"),
+                filtered = place.hwsim("run drawn/color.png -t fxaa --json --out filtered");
+  ASSERT_EQ(filtered.status, 0) << filtered.err;
+  const json result = json::parse(filtered.out);
+  EXPECT_EQ(result["resolution"], json({64, 48}));
+  EXPECT_EQ(result["technique"], "fxaa");
+  EXPECT_EQ(result["passes"].size(), 2u);
+  EXPECT_EQ(place.read("filtered/color.png"), place.read("both/color.png"));
+}
+
+TEST_F(RunTest, SettingsReachThePartThatHasTheParameter) {
+  const Outcome outcome =
+      run("-t msaa4x+fxaa:subpix=0.5 --set technique.preset=39 --set technique.centroid=off --json --out r");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(json::parse(outcome.out)["technique"], "msaa4x:centroid=off+fxaa:preset=39,subpix=0.5");
+}
+
 TEST_F(RunTest, JsonHasTheKeysOfTheContract) {
   const Outcome outcome = run("-t msaa4x --json --reference 1 --out result");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
