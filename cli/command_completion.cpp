@@ -32,7 +32,7 @@ Values values_of_flag(const std::string& flag) {
 Values values_of_command(const std::string& command) {
   static const std::map<std::string, Values> values = {
       {"run", {"", "scenes"}},         {"reference", {"", "scenes"}},
-      {"scene check", {"", "scenes"}}, {"list", {"gpus scenes techniques counters tables", ""}},
+      {"scene check", {"", "scenes"}}, {"list", {"gpus scenes techniques counters overlays tables", ""}},
       {"show", {"", "gpus"}},          {"config check", {"", "gpus"}},
       {"config show", {"", "gpus"}},   {"config diff", {"", "gpus"}},
       {"config schema", {"gpu", ""}},  {"completion", {"bash zsh fish", ""}}};

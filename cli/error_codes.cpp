@@ -33,6 +33,25 @@ constexpr ErrorCode kCodes[] = {
     {"U014", "no such help topic", "`hwsim help` takes the code of a message or the name of a command."},
     {"U015", "damaged CSV", "Every record of a CSV file must have as many fields as its header."},
     {"U016", "unknown name", "`hwsim show` takes the name of a GPU, scene, technique, counter or table."},
+    {"U017", "bad size of the cache",
+     "HWSIM_CACHE_MIB limits the traces kept on disk, in MiB; 0 keeps none."},
+    {"U018", "unknown overlay",
+     "--overlay and --what-if take a name of `hwsim list overlays`; --overlay also a file that ends in "
+     ".toml."},
+    {"U019", "bad axis",
+     "--vary takes path=a,b,c or path=lo..hi:n or path=lo..hi:n:log; --zip wants lists of one length, "
+     "--sample lhs:POINTS."},
+    {"U020", "no result", "The folder or file is not what `hwsim run` writes."},
+    {"U021", "database of a sweep",
+     "The SQLite database cannot be opened or written, is damaged, or was not written by `hwsim sweep`."},
+    {"K001", "damaged file in the cache",
+     "A file that hwsim keeps to save work is cut off, changed, or of another version. It is made anew: "
+     "results "
+     "are not affected."},
+    {"K002", "cache cannot be written",
+     "Traces are kept below $HWSIM_CACHE (else $XDG_CACHE_HOME/hwsim, else ~/.cache/hwsim). Without them "
+     "every "
+     "run emulates again; results are not affected."},
     {"T001", "unknown technique",
      "`hwsim list techniques` lists the names; parameters follow after a colon."},
     {"T002", "unknown parameter of a technique",

@@ -23,6 +23,24 @@ inline constexpr std::string_view kHelpRun = R"(Examples:
 Runs techniques on a scene: images, time of each pass, the unit that limits it. A run.toml of
 an earlier run may stand for the scene: it gives the same numbers again.)";
 
+inline constexpr std::string_view kHelpCompare = R"(Examples:
+  hwsim compare sponza_hall -t msaa8x -g gtx980 --what-if rops-x2,l2-x4 --resolution 320x180
+  hwsim compare sponza_hall -t msaa4x --set gpu.dram_bandwidth_gb_s=x0.5 --resolution 320x180
+  hwsim compare sponza_hall -t none,msaa4x --resolution 320x180 --format csv
+
+Compares results pass by pass: those of earlier runs (give their folders), or one scene before
+and after --set and --overlay, for each --what-if, each point of --vary, each technique and GPU.
+The first result is the baseline; a change is (new - old) / |old|.)";
+
+inline constexpr std::string_view kHelpSweep = R"(Examples:
+  hwsim sweep sponza_hall -t none,msaa4x --vary gpu.l2_size_kib=256..4096:5:log --resolution 320x180
+  hwsim sweep sponza_hall -t msaa8x --vary gpu.core_clock_mhz=800..1600 --sample lhs:16 --db s.sqlite --dry-run
+  hwsim sweep --format csv
+
+Runs many points: techniques, GPUs, and settings varied over lists and ranges. Every point is
+written to the database before the first one runs, each result as it comes: --resume goes on
+after an interruption. Without a scene, prints what the database holds.)";
+
 inline constexpr std::string_view kHelpReference = R"(Examples:
   hwsim reference sponza_hall --resolution 320x180 --samples 4
   hwsim reference sponza_hall --resolution 160x90 --samples 16 --out reference_hall
@@ -34,7 +52,7 @@ inline constexpr std::string_view kHelpList = R"(Examples:
   hwsim list techniques --format md
   hwsim list counters --json
 
-Lists what hwsim knows: gpus, scenes, techniques, counters or tables.)";
+Lists what hwsim knows: gpus, scenes, techniques, counters, overlays or tables.)";
 
 inline constexpr std::string_view kHelpShow = R"(Examples:
   hwsim show gtx980 --origin
@@ -101,7 +119,7 @@ inline constexpr std::string_view kHelpCache = R"(Examples:
   hwsim cache list
   hwsim cache prune --older-than 30
 
-Lists and removes what is kept on disk: generated scenes and references.)";
+Lists and removes what is kept on disk: generated scenes, references, and traces of emulated frames.)";
 
 inline constexpr std::string_view kHelpCacheList = R"(Examples:
   hwsim cache list
@@ -112,6 +130,7 @@ Lists the files below $HWSIM_CACHE (else $XDG_CACHE_HOME/hwsim, else ~/.cache/hw
 inline constexpr std::string_view kHelpCachePrune = R"(Examples:
   hwsim cache prune --dry-run
   hwsim cache prune --older-than 30
+  hwsim cache prune --keep-mib 512
 
 Removes old files from the cache; they are made anew when they are needed.)";
 

@@ -22,6 +22,7 @@ struct ViewPlan {
   int point_lights = 0;
   bool shadows = true;
   int shadow_map_px = 2048;
+  bool operator==(const ViewPlan&) const = default;
 };
 
 struct RunPlan {
