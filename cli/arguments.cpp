@@ -135,6 +135,14 @@ void add_points(CLI::App& app, RunOptions& run) {
   app.add_flag("--no-cache", run.no_cache, "Emulate anew, and keep no traces");
 }
 
+void add_reference_samples(CLI::App& app, RunOptions& run) {
+  app.add_option("--reference", run.reference_samples,
+                 "Compare with the ray-traced reference of so many samples a pixel; default 64")
+      ->check(CLI::Range(1, 65536))
+      ->type_name("[SAMPLES]");
+  app.add_flag("--no-image", run.no_image, "Write no images");
+}
+
 void add_vary(CLI::App& app, std::vector<std::string>& vary, bool& zip) {
   add_repeatable(app, "--vary", vary, "Values of a setting: a,b,c or lo..hi:n or lo..hi:n:log (repeatable)",
                  "PATH=VALUES");
@@ -165,6 +173,8 @@ struct Parser {
   CLI::App app{std::string(kHelpTop), "hwsim"};
   RunOptions run;
   CompareOptions compare;
+  ExplainOptions explain;
+  RankOptions rank;
   SweepOptions sweep;
   ReferenceOptions reference;
   ListOptions list;
@@ -191,6 +201,8 @@ struct Parser {
                 std::function<Command()> result);
   void add_run();
   void add_compare();
+  void add_explain();
+  void add_rank();
   void add_sweep();
   void add_reference();
   void add_list_and_show();
@@ -213,11 +225,7 @@ void Parser::add_run() {
   CLI::App& sub = add(app, "run", kHelpRun, [this] { return Command(run); });
   add_view(sub, run.view, true);
   add_points(sub, run);
-  sub.add_option("--reference", run.reference_samples,
-                 "Compare with the ray-traced reference of so many samples a pixel; default 64")
-      ->check(CLI::Range(1, 65536))
-      ->type_name("[SAMPLES]");
-  sub.add_flag("--no-image", run.no_image, "Write no images");
+  add_reference_samples(sub, run);
   add_out(sub, run.out);
   add_common(sub, run.common);
 }
@@ -234,6 +242,25 @@ void Parser::add_compare() {
   add_vary(sub, compare.vary, compare.zip);
   sub.add_flag("--counters", compare.counters, "Also the counters that changed");
   add_common(sub, compare.common);
+}
+
+void Parser::add_explain() {
+  CLI::App& sub = add(app, "explain", kHelpExplain, [this] { return Command(explain); });
+  add_view(sub, explain.view, true);
+  add_points(sub, explain);
+  sub.add_flag("--all", explain.all, "Also the parameters without influence");
+  add_common(sub, explain.common);
+}
+
+void Parser::add_rank() {
+  CLI::App& sub = add(app, "rank", kHelpRank, [this] { return Command(rank); });
+  add_view(sub, rank.view, true);
+  add_points(sub, rank);
+  add_reference_samples(sub, rank);
+  sub.add_option("--budget", rank.budget, "Limits of aa_ms, frame_ms, extra_mib, memory_mib, dram_mb")
+      ->type_name("LIMITS");
+  add_out(sub, rank.out);
+  add_common(sub, rank.common);
 }
 
 void Parser::add_sweep() {
@@ -381,6 +408,8 @@ Parser::Parser() {
   app.require_subcommand(1);
   add_run();
   add_compare();
+  add_explain();
+  add_rank();
   add_sweep();
   add_reference();
   add_list_and_show();

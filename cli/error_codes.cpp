@@ -44,6 +44,9 @@ constexpr ErrorCode kCodes[] = {
     {"U020", "no result", "The folder or file is not what `hwsim run` writes."},
     {"U021", "database of a sweep",
      "The SQLite database cannot be opened or written, is damaged, or was not written by `hwsim sweep`."},
+    {"U022", "bad budget",
+     "--budget is a list of quantity<=number; quantities are aa_ms, frame_ms, extra_mib, memory_mib, "
+     "dram_mb."},
     {"K001", "damaged file in the cache",
      "A file that hwsim keeps to save work is cut off, changed, or of another version. It is made anew: "
      "results "

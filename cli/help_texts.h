@@ -32,6 +32,23 @@ Compares results pass by pass: those of earlier runs (give their folders), or on
 and after --set and --overlay, for each --what-if, each point of --vary, each technique and GPU.
 The first result is the baseline; a change is (new - old) / |old|.)";
 
+inline constexpr std::string_view kHelpExplain = R"(Examples:
+  hwsim explain sponza_hall -t msaa8x -g gtx980 --resolution 320x180
+  hwsim explain sponza_hall -t none,msaa4x --resolution 320x180
+  hwsim explain sponza_hall -t msaa4x --resolution 320x180 --all --format csv
+
+Says why a frame takes its time: the busiest units and the time stack of each pass, what the frame
+would gain if a unit took no time, and how much each number of the GPU matters (exact derivatives
+of the timing engine). With two techniques or GPUs, also where they differ.)";
+
+inline constexpr std::string_view kHelpRank = R"(Examples:
+  hwsim rank sponza_hall -t msaa4x,msaa8x -g gtx980 --resolution 320x180 --reference 4
+  hwsim rank sponza_hall -t msaa4x,ssaa4x --budget "aa_ms<=0.1, extra_mib<=8" --resolution 320x180 --reference 4
+
+Ranks techniques (all, unless -t names some) on one scene and GPU: time, memory, bytes and error of
+the image, the Pareto front of time and error, and what each is under a budget: ok, at risk, over
+time, over memory, unsupported. Writes crops of the worst regions side by side: contact_sheet.png.)";
+
 inline constexpr std::string_view kHelpSweep = R"(Examples:
   hwsim sweep sponza_hall -t none,msaa4x --vary gpu.l2_size_kib=256..4096:5:log --resolution 320x180
   hwsim sweep sponza_hall -t msaa8x --vary gpu.core_clock_mhz=800..1600 --sample lhs:16 --db s.sqlite --dry-run

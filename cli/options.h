@@ -66,6 +66,16 @@ struct CompareOptions : RunOptions {
   bool counters = false;
 };
 
+/// Why a frame takes its time.
+struct ExplainOptions : RunOptions {
+  bool all = false;  ///< parameters without influence too
+};
+
+/// Techniques under a budget.
+struct RankOptions : RunOptions {
+  std::string budget;  ///< "aa_ms<=1.5, extra_mib<=192"
+};
+
 /// Many points in a database.
 struct SweepOptions : RunOptions {
   std::vector<std::string> vary;
@@ -159,8 +169,8 @@ struct PrintText {
 };
 
 using Command =
-    std::variant<PrintText, RunOptions, CompareOptions, SweepOptions, ReferenceOptions, ListOptions,
-                 ShowOptions, SceneCheckOptions, ConfigOptions, DoctorOptions, HelpOptions, CacheOptions,
-                 FitOptions, ValidateOptions, ReproduceOptions, CompletionOptions>;
+    std::variant<PrintText, RunOptions, ExplainOptions, RankOptions, CompareOptions, SweepOptions,
+                 ReferenceOptions, ListOptions, ShowOptions, SceneCheckOptions, ConfigOptions, DoctorOptions,
+                 HelpOptions, CacheOptions, FitOptions, ValidateOptions, ReproduceOptions, CompletionOptions>;
 
 }  // namespace hwsim::cli
