@@ -13,7 +13,8 @@ inline constexpr std::string_view kHelpTop = R"(Examples:
   hwsim doctor
 
 Executes an anti-aliasing technique on a scene and predicts its time on a GPU.
-Exit status: 0 done, 1 run failed, 2 usage, 3 invalid input, 130 interrupted.)";
+Exit status: 0 done, 1 run failed, 2 usage, 3 invalid input, 4 check not met, 5 some points failed,
+130 interrupted.)";
 
 inline constexpr std::string_view kHelpRun = R"(Examples:
   hwsim run sponza_hall --technique msaa4x --gpu gtx980
