@@ -9,16 +9,6 @@
 namespace hwsim::cli {
 namespace {
 
-std::vector<std::string> split(std::string_view text, char separator) {
-  std::vector<std::string> pieces(1);
-  for (const char c : text)
-    if (c == separator)
-      pieces.emplace_back();
-    else
-      pieces.back() += c;
-  return pieces;
-}
-
 Format format_from_name(const std::string& name) {
   static const std::map<std::string, Format, std::less<>> formats = {
       {"table", Format::table}, {"csv", Format::csv}, {"json", Format::json}, {"md", Format::md}};
@@ -28,6 +18,16 @@ Format format_from_name(const std::string& name) {
 }
 
 }  // namespace
+
+std::vector<std::string> split(std::string_view text, char separator) {
+  std::vector<std::string> pieces(1);
+  for (const char c : text)
+    if (c == separator)
+      pieces.emplace_back();
+    else
+      pieces.back() += c;
+  return pieces;
+}
 
 FormatRequest parse_format(const std::string& text) {
   const auto equals = text.find('=');

@@ -8,6 +8,8 @@
 
 namespace hwsim::cli {
 
+std::vector<std::string> split(std::string_view text, char separator);
+
 /// "csv" or "csv=passes.csv". Throws InputError U003.
 FormatRequest parse_format(const std::string& text);
 

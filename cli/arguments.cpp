@@ -83,7 +83,9 @@ void add_sets(CLI::App& app, std::vector<std::string>& sets) {
 }
 
 void add_overlays(CLI::App& app, std::vector<std::string>& overlays) {
-  add_repeatable(app, "--overlay", overlays, "TOML file laid over the GPU (repeatable)", "FILE");
+  add_repeatable(app, "--overlay", overlays,
+                 "A what-if of `hwsim list overlays`, or a .toml file, laid over the GPU (repeatable)",
+                 "NAME|FILE");
 }
 
 void add_out(CLI::App& app, OutOptions& out) {
@@ -92,10 +94,7 @@ void add_out(CLI::App& app, OutOptions& out) {
   app.add_flag("--force", out.force, "Replace the results in --out");
 }
 
-void add_view(CLI::App& app, ViewOptions& view, bool required) {
-  app.add_option("SCENE", view.scene, "A .gltf or .glb file, or a generator: name:key=value,key=value")
-      ->required(required)
-      ->type_name(" ");
+void add_view_flags(CLI::App& app, ViewOptions& view) {
   app.add_option_function<std::string>(
          "--resolution", [&view](const std::string& text) { view.resolution = parse_resolution(text); },
          "Pixels, 1 to 16384 each way; default 1280x720")
@@ -107,6 +106,47 @@ void add_view(CLI::App& app, ViewOptions& view, bool required) {
       ->type_name("N");
   app.add_flag("--no-shadows", view.no_shadows, "No shadow map");
   add_sets(app, view.sets);
+}
+
+void add_view(CLI::App& app, ViewOptions& view, bool required) {
+  app.add_option("SCENE", view.scene, "A .gltf or .glb file, or a generator: name:key=value,key=value")
+      ->required(required)
+      ->type_name(" ");
+  add_view_flags(app, view);
+}
+
+/// Which techniques on which GPUs.
+void add_points(CLI::App& app, RunOptions& run) {
+  app.add_option_function<std::vector<std::string>>(
+         "-t,--technique",
+         [&run](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts)
+             for (std::string& technique : split_techniques(text))
+               run.techniques.push_back(std::move(technique));
+         },
+         "Techniques, separated by commas (repeatable); default none")
+      ->allow_extra_args(false)
+      ->type_name("NAME[:key=value]");
+  add_repeatable(app, "-g,--gpu", run.gpus, "A GPU of `hwsim list gpus`, or a .toml file (repeatable)",
+                 "NAME|FILE")
+      ->envname("HWSIM_GPU");
+  add_overlays(app, run.overlays);
+  app.add_option("--engine", run.engine, "Timing engine; default queue")->type_name("roofline|queue");
+  app.add_flag("--no-cache", run.no_cache, "Emulate anew, and keep no traces");
+}
+
+void add_reference_samples(CLI::App& app, RunOptions& run) {
+  app.add_option("--reference", run.reference_samples,
+                 "Compare with the ray-traced reference of so many samples a pixel; default 64")
+      ->check(CLI::Range(1, 65536))
+      ->type_name("[SAMPLES]");
+  app.add_flag("--no-image", run.no_image, "Write no images");
+}
+
+void add_vary(CLI::App& app, std::vector<std::string>& vary, bool& zip) {
+  add_repeatable(app, "--vary", vary, "Values of a setting: a,b,c or lo..hi:n or lo..hi:n:log (repeatable)",
+                 "PATH=VALUES");
+  app.add_flag("--zip", zip, "Vary all together instead of every combination");
 }
 
 /// The sentence of a help text that says what the command does; it follows the examples.
@@ -132,6 +172,10 @@ class HelpFormatter : public CLI::Formatter {
 struct Parser {
   CLI::App app{std::string(kHelpTop), "hwsim"};
   RunOptions run;
+  CompareOptions compare;
+  ExplainOptions explain;
+  RankOptions rank;
+  SweepOptions sweep;
   ReferenceOptions reference;
   ListOptions list;
   ShowOptions show;
@@ -156,6 +200,10 @@ struct Parser {
   CLI::App& add(CLI::App& parent, const std::string& name, std::string_view text,
                 std::function<Command()> result);
   void add_run();
+  void add_compare();
+  void add_explain();
+  void add_rank();
+  void add_sweep();
   void add_reference();
   void add_list_and_show();
   void add_scene();
@@ -176,28 +224,61 @@ CLI::App& Parser::add(CLI::App& parent, const std::string& name, std::string_vie
 void Parser::add_run() {
   CLI::App& sub = add(app, "run", kHelpRun, [this] { return Command(run); });
   add_view(sub, run.view, true);
-  sub.add_option_function<std::vector<std::string>>(
-         "-t,--technique",
-         [this](const std::vector<std::string>& texts) {
-           for (const std::string& text : texts)
-             for (std::string& technique : split_techniques(text))
-               run.techniques.push_back(std::move(technique));
-         },
-         "Techniques, separated by commas (repeatable); default none")
-      ->allow_extra_args(false)
-      ->type_name("NAME[:key=value]");
-  add_repeatable(sub, "-g,--gpu", run.gpus, "A GPU of `hwsim list gpus`, or a .toml file (repeatable)",
-                 "NAME|FILE")
-      ->envname("HWSIM_GPU");
-  add_overlays(sub, run.overlays);
-  sub.add_option("--engine", run.engine, "Timing engine; default queue")->type_name("roofline|queue");
-  sub.add_option("--reference", run.reference_samples,
-                 "Compare with the ray-traced reference of so many samples a pixel; default 64")
-      ->check(CLI::Range(1, 65536))
-      ->type_name("[SAMPLES]");
-  sub.add_flag("--no-image", run.no_image, "Write no images");
+  add_points(sub, run);
+  add_reference_samples(sub, run);
   add_out(sub, run.out);
   add_common(sub, run.common);
+}
+
+void Parser::add_compare() {
+  CLI::App& sub = add(app, "compare", kHelpCompare, [this] { return Command(compare); });
+  sub.add_option("SCENE|RESULTS", compare.inputs, "A scene, or folders of results")
+      ->required()
+      ->type_name(" ");
+  add_view_flags(sub, compare.view);
+  add_points(sub, compare);
+  add_repeatable(sub, "--what-if", compare.what_ifs,
+                 "Overlays of `hwsim list overlays`, each a result of its own; a+b lays both", "NAME,NAME");
+  add_vary(sub, compare.vary, compare.zip);
+  sub.add_flag("--counters", compare.counters, "Also the counters that changed");
+  add_common(sub, compare.common);
+}
+
+void Parser::add_explain() {
+  CLI::App& sub = add(app, "explain", kHelpExplain, [this] { return Command(explain); });
+  add_view(sub, explain.view, true);
+  add_points(sub, explain);
+  sub.add_flag("--all", explain.all, "Also the parameters without influence");
+  add_common(sub, explain.common);
+}
+
+void Parser::add_rank() {
+  CLI::App& sub = add(app, "rank", kHelpRank, [this] { return Command(rank); });
+  add_view(sub, rank.view, true);
+  add_points(sub, rank);
+  add_reference_samples(sub, rank);
+  sub.add_option("--budget", rank.budget, "Limits of aa_ms, frame_ms, extra_mib, memory_mib, dram_mb")
+      ->type_name("LIMITS");
+  add_out(sub, rank.out);
+  add_common(sub, rank.common);
+}
+
+void Parser::add_sweep() {
+  CLI::App& sub = add(app, "sweep", kHelpSweep, [this] { return Command(sweep); });
+  add_view(sub, sweep.view, false);
+  add_points(sub, sweep);
+  add_vary(sub, sweep.vary, sweep.zip);
+  sub.add_option("--sample", sweep.sample, "A sample of the ranges instead of every combination")
+      ->type_name("lhs:POINTS");
+  sub.add_option("--seed", sweep.seed, "Of the sample; default 1")->type_name("N");
+  sub.add_option("--db", sweep.database, "The database; default sweep.sqlite")->type_name("FILE");
+  sub.add_flag("--resume", sweep.resume, "Go on with a sweep: points that are done are kept");
+  sub.add_flag("--force", sweep.out.force, "Replace the sweep in --db");
+  sub.add_option("--shard", sweep.shard, "Only the I-th of N parts of the points")->type_name("I/N");
+  add_repeatable(sub, "--merge", sweep.merge, "Take over the points of another database (repeatable)",
+                 "FILE");
+  sub.add_flag("--dry-run", sweep.dry_run, "List the points, run nothing");
+  add_common(sub, sweep.common);
 }
 
 void Parser::add_reference() {
@@ -212,7 +293,7 @@ void Parser::add_reference() {
 
 void Parser::add_list_and_show() {
   CLI::App& lister = add(app, "list", kHelpList, [this] { return Command(list); });
-  lister.add_option("WHAT", list.what, "gpus, scenes, techniques, counters or tables")
+  lister.add_option("WHAT", list.what, "gpus, scenes, techniques, counters, overlays or tables")
       ->required()
       ->type_name(" ");
   add_common(lister, list.common);
@@ -276,6 +357,9 @@ void Parser::add_cache() {
   prune.add_option("--older-than", cache.older_than_days, "Days since a file was written; default 30")
       ->check(CLI::Range(0, 36500))
       ->type_name("DAYS");
+  prune
+      .add_option("--keep-mib", cache.keep_mib, "Remove what was used least recently, until so much is left")
+      ->type_name("MIB");
   prune.add_flag("--dry-run", cache.dry_run, "Say what would go, and keep it");
   add_common(prune, cache.common);
 }
@@ -323,6 +407,10 @@ Parser::Parser() {
   app.formatter(formatter);
   app.require_subcommand(1);
   add_run();
+  add_compare();
+  add_explain();
+  add_rank();
+  add_sweep();
   add_reference();
   add_list_and_show();
   add_scene();

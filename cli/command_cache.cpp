@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <chrono>
 #include <filesystem>
 
 #include "cli/cache.h"
@@ -13,32 +11,6 @@ namespace hwsim::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct CachedFile {
-  std::string folder;
-  fs::path path;
-  std::uint64_t bytes = 0;
-  double age_days = 0.0;
-};
-
-/// Only the folders that hwsim writes: whatever else lies in the cache directory is not ours.
-std::vector<CachedFile> cached_files() {
-  std::vector<CachedFile> files;
-  const auto now = fs::file_time_type::clock::now();
-  for (const CacheFolder folder : {CacheFolder::scenes, CacheFolder::references, CacheFolder::durations}) {
-    const fs::path directory = cache_directory(folder);
-    std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
-      if (!entry.is_regular_file(error)) continue;
-      const std::chrono::duration<double, std::ratio<86400>> age = now - entry.last_write_time(error);
-      files.push_back(
-          {directory.filename().string(), entry.path(), entry.file_size(error), std::max(0.0, age.count())});
-    }
-  }
-  std::sort(files.begin(), files.end(),
-            [](const CachedFile& a, const CachedFile& b) { return a.path < b.path; });
-  return files;
-}
 
 Table file_table(const std::vector<CachedFile>& files) {
   Table table{
@@ -53,7 +25,9 @@ Table file_table(const std::vector<CachedFile>& files) {
 
 ExitStatus cache(const CacheOptions& options, Context& context) {
   std::vector<CachedFile> files = cached_files();
-  if (options.prune && !options.all)
+  if (options.prune && options.keep_mib)
+    files = least_recently_used(std::move(files), std::uint64_t{*options.keep_mib} << 20);
+  else if (options.prune && !options.all)
     std::erase_if(files, [&](const CachedFile& file) { return file.age_days < options.older_than_days; });
   std::uint64_t bytes = 0;
   for (const CachedFile& file : files) bytes += file.bytes;

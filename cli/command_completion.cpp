@@ -22,6 +22,8 @@ Values values_of_flag(const std::string& flag) {
   static const std::map<std::string, Values> values = {{"--gpu", {"", "gpus"}},
                                                        {"--technique", {"", "techniques"}},
                                                        {"--engine", {"roofline queue", ""}},
+                                                       {"--overlay", {"", "overlays"}},
+                                                       {"--what-if", {"", "overlays"}},
                                                        {"--format", {"table csv json md", ""}},
                                                        {"--color", {"auto always never", ""}},
                                                        {"--progress", {"auto always never", ""}}};
@@ -31,8 +33,10 @@ Values values_of_flag(const std::string& flag) {
 
 Values values_of_command(const std::string& command) {
   static const std::map<std::string, Values> values = {
-      {"run", {"", "scenes"}},         {"reference", {"", "scenes"}},
-      {"scene check", {"", "scenes"}}, {"list", {"gpus scenes techniques counters tables", ""}},
+      {"run", {"", "scenes"}},         {"compare", {"", "scenes"}},
+      {"explain", {"", "scenes"}},     {"sweep", {"", "scenes"}},
+      {"rank", {"", "scenes"}},        {"reference", {"", "scenes"}},
+      {"scene check", {"", "scenes"}}, {"list", {"gpus scenes techniques counters overlays tables", ""}},
       {"show", {"", "gpus"}},          {"config check", {"", "gpus"}},
       {"config show", {"", "gpus"}},   {"config diff", {"", "gpus"}},
       {"config schema", {"gpu", ""}},  {"completion", {"bash zsh fish", ""}}};
@@ -78,14 +82,15 @@ std::string bash_script(const std::vector<CommandInfo>& commands) {
       "  case \"$command\" in scene|config|cache) [ \"$COMP_CWORD\" -gt 2 ] && command=\"$command "
       "${COMP_WORDS[2]}\";; esac\n"
       "  case \"$previous\" in\n";
-  for (const char* flag : {"--gpu", "--technique", "--engine", "--format", "--color", "--progress"}) {
+  for (const char* flag :
+       {"--gpu", "--technique", "--engine", "--format", "--color", "--progress", "--overlay", "--what-if"}) {
     const std::string short_name = flag == std::string("--gpu")         ? "|-g"
                                    : flag == std::string("--technique") ? "|-t"
                                                                         : "";
     script += fmt::format("    {}{}) COMPREPLY=($(compgen -W \"{}\" -- \"$current\")); return;;\n", flag,
                           short_name, shell_words(values_of_flag(flag)));
   }
-  script += "    --out|--overlay) COMPREPLY=($(compgen -f -- \"$current\")); return;;\n  esac\n";
+  script += "    --out|--db|--merge) COMPREPLY=($(compgen -f -- \"$current\")); return;;\n  esac\n";
   script += fmt::format("  if [ \"$COMP_CWORD\" -eq 1 ]; then words=\"{}\"; else\n  case \"$command\" in\n",
                         top_words(commands));
   for (const CommandInfo& command : commands) {

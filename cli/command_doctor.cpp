@@ -13,7 +13,6 @@
 #include "cli/simulate.h"
 #include "cli/table.h"
 #include "pipeline/image/image_io.h"
-#include "pipeline/scene/gltf_loader.h"
 
 namespace hwsim::cli {
 namespace {
@@ -88,7 +87,7 @@ std::string check_cache() {
 }
 
 /// The whole way, small: a scene, a technique, every invariant, the same bytes on one thread and on two.
-std::string check_simulation(const TemporaryFolder& folder) {
+std::string check_simulation(const TemporaryFolder& folder, Log& log) {
   const std::string path = folder.file("triangle.gltf");
   write_file(path, kTriangleGltf);
   RunOptions options;
@@ -96,12 +95,13 @@ std::string check_simulation(const TemporaryFolder& folder) {
   options.view.resolution = Resolution{64, 64};
   options.techniques = {"none"};
   const RunPlan plan = make_run_plan(options);
-  LoadedScene loaded{std::make_shared<const pipeline::Scene>(pipeline::load_gltf(path)), 0, nullptr};
+  SceneView scene(plan.view, log);
   std::vector<std::vector<glm::vec4>> images;
   std::uint64_t samples = 0;
   for (const int jobs : {1, 2}) {
+    TraceStore store({.jobs = jobs, .disk = false}, log);
     const PointResult point =
-        Simulator(plan, loaded, nullptr, jobs).run(plan.techniques.front(), plan.gpus.front(), nullptr);
+        Simulator(plan, scene, nullptr, store).run(plan.techniques.front(), plan.gpus.front(), nullptr);
     images.push_back(point.emulation->color.pixels);
     samples = total(point.emulation->trace).stats.samples_passed;
     require(point.timing.time_ns > 0.0, "a frame takes no time");
@@ -115,6 +115,9 @@ std::string check_simulation(const TemporaryFolder& folder) {
 
 ExitStatus doctor(const DoctorOptions& options, Context& context) {
   const TemporaryFolder folder;
+  CommonOptions silent;
+  silent.verbosity = -1;
+  Log quiet(silent, context.terminal);  // notes on the test's own triangle
   const std::vector<std::pair<std::string, std::function<std::string()>>> checks = {
       {"program",
        [] {
@@ -123,7 +126,7 @@ ExitStatus doctor(const DoctorOptions& options, Context& context) {
       {"configs", check_configs},
       {"images", [&] { return check_images(folder); }},
       {"cache", check_cache},
-      {"simulation", [&] { return check_simulation(folder); }}};
+      {"simulation", [&] { return check_simulation(folder, quiet); }}};
   Table table{{{"check", "check"}, {"state", "state"}, {"ms", "ms", true}, {"detail", "detail"}}, {}};
   ExitStatus status = ExitStatus::done;
   for (const auto& [name, check] : checks) {

@@ -4,6 +4,7 @@
 #include "cli/catalog.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
+#include "cli/overlays.h"
 
 namespace hwsim::cli {
 
@@ -12,14 +13,16 @@ ExitStatus list(const ListOptions& options, Context& context) {
                                                                          {"scenes", scene_catalog},
                                                                          {"techniques", technique_catalog},
                                                                          {"counters", counter_catalog_table},
+                                                                         {"overlays", overlay_catalog},
                                                                          {"tables", table_catalog}};
   const auto found = catalogs.find(options.what);
   if (found == catalogs.end()) {
     std::vector<std::string> names;
     for (const auto& [name, catalog] : catalogs) names.push_back(name);
-    fail_usage("U003",
-               "cannot list `" + options.what + "`, only gpus, scenes, techniques, counters or tables",
-               did_you_mean(options.what, names));
+    fail_usage(
+        "U003",
+        "cannot list `" + options.what + "`, only gpus, scenes, techniques, counters, overlays or tables",
+        did_you_mean(options.what, names));
   }
   const Table table = found->second();
   print({.table = table}, options.common);

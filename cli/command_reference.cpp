@@ -24,22 +24,20 @@ ExitStatus reference(const ReferenceOptions& options, Context& context) {
   RunDirectory directory(options.out, plan.view.scene);
   guard.remove_on_interrupt(directory.partial());
   Progress progress(options.common, context.terminal);
-  const LoadedScene loaded = load_view(plan.view);
-  for (const Diagnostic& note : loaded.scene->notes) context.log.report(note);
+  SceneView scene(plan.view, context.log);
   const ReferenceImage image =
-      make_reference(plan.view, loaded, options.samples, options.common.jobs,
+      make_reference(scene, options.samples, options.common.jobs,
                      [&](double done, const std::string& what) { progress.update(done, what); });
   progress.finish();
   pipeline::write_image(image.image, directory.path("reference.png"));
   pipeline::write_image(image.image, directory.path("reference.exr"));
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  write_file(directory.path("manifest.json"), manifest({.context = &context,
-                                                        .plan = &plan,
-                                                        .scene = loaded.scene.get(),
-                                                        .wall_s = wall_s,
-                                                        .state = "done"})
-                                                      .dump(2) +
-                                                  "\n");
+  write_file(
+      directory.path("manifest.json"),
+      manifest(
+          {.context = &context, .plan = &plan, .scene = &scene.summary(), .wall_s = wall_s, .state = "done"})
+              .dump(2) +
+          "\n");
   write_file(directory.path("log.txt"), context.log.text());
   directory.commit();
   guard.keep();
@@ -49,7 +47,7 @@ ExitStatus reference(const ReferenceOptions& options, Context& context) {
        {"wall_s", "seconds", true},
        {"from_cache", "from cache"},
        {"image", "image"}},
-      {{loaded.scene->name, static_cast<std::uint64_t>(options.samples), Real{image.wall_s, 2},
+      {{scene.summary().name, static_cast<std::uint64_t>(options.samples), Real{image.wall_s, 2},
         image.from_cache ? "yes" : "no", (directory.final_place() / "reference.png").string()}}};
   print({.table = table}, options.common);
   return ExitStatus::done;

@@ -69,7 +69,7 @@ class Run {
   std::unique_ptr<Progress> progress_;
   size_t stages_ = 0, stage_ = 0;
 
-  LoadedScene loaded_;
+  std::unique_ptr<SceneView> scene_;
   std::optional<ReferenceImage> reference_;
   std::vector<std::vector<Cell>> rows_;
   Json results_ = Json::array();
@@ -102,11 +102,10 @@ void Run::stage_progress(double done_ratio, const std::string& what) {
 }
 
 void Run::load() {
-  loaded_ = load_view(plan_.view);
-  if (loaded_.image) plan_.view.resolution = {loaded_.image->width, loaded_.image->height};
-  for (const Diagnostic& note : loaded_.scene->notes) context_.log.report(note);
+  scene_ = std::make_unique<SceneView>(plan_.view, context_.log);
+  plan_.view.resolution = scene_->plan().resolution;  // an image in place of a scene brings its own
   if (plan_.reference_samples == 0) return;
-  reference_ = make_reference(plan_.view, loaded_, plan_.reference_samples, options_.common.jobs,
+  reference_ = make_reference(*scene_, plan_.reference_samples, options_.common.jobs,
                               [this](double done, const std::string& what) { stage_progress(done, what); });
   context_.log.detail(fmt::format("reference: {}{}", duration_text(reference_->wall_s),
                                   reference_->from_cache ? ", from the cache" : ""));
@@ -114,7 +113,8 @@ void Run::load() {
 }
 
 void Run::simulate() {
-  Simulator simulator(plan_, loaded_, reference_ ? &*reference_ : nullptr, options_.common.jobs);
+  TraceStore store({.jobs = options_.common.jobs, .disk = !options_.no_cache}, context_.log);
+  Simulator simulator(plan_, *scene_, reference_ ? &*reference_ : nullptr, store);
   for (const algos::TechniqueChoice& technique : plan_.techniques)
     for (const GpuConfig& gpu : plan_.gpus) {
       const std::string name = algos::technique_text(technique) + " on " + gpu.id;
@@ -129,10 +129,10 @@ void Run::simulate() {
 
 void Run::record(const PointResult& point) {
   const bool alone = plan_.techniques.size() * plan_.gpus.size() == 1;
-  const std::string& scene = loaded_.scene->name;
+  const std::string& scene = scene_->summary().name;
   write_point_files(alone ? directory_->partial().string() : directory_->path(point_folder(point)), point,
                     plan_, scene, reference_ ? &*reference_ : nullptr);
-  if (!point.emulation_reused) {
+  if (!point.from_cache) {
     fragments_ += shader_invocations(point.emulation->trace);
     emulation_s_ += point.emulation->wall_s;
   }
@@ -149,7 +149,7 @@ void Run::record(const PointResult& point) {
 Json Run::manifest_now(const std::string& state) const {
   return manifest({.context = &context_,
                    .plan = &plan_,
-                   .scene = loaded_.scene.get(),
+                   .scene = scene_ ? &scene_->summary() : nullptr,
                    .wall_s = std::chrono::duration<double>(Clock::now() - start_).count(),
                    .fragments = fragments_,
                    .emulation_s = emulation_s_,
@@ -168,7 +168,7 @@ ExitStatus Run::finish() {
   remember_seconds(plan_key(plan_, options_.common.jobs), manifest["wall_s"]);
 
   const Json several = {{"schema_version", kResultSchemaVersion}, {"results", results_}};
-  const std::string title = fmt::format("{} at {}x{}\n\n", loaded_.scene->name,
+  const std::string title = fmt::format("{} at {}x{}\n\n", scene_->summary().name,
                                         plan_.view.resolution.width_px, plan_.view.resolution.height_px);
   print({.table = alone ? single_ : summary,
          .heading = alone ? heading_ : title,

@@ -8,6 +8,10 @@
 namespace hwsim::cli {
 
 ExitStatus run(const RunOptions& options, Context& context);
+ExitStatus compare(const CompareOptions& options, Context& context);
+ExitStatus explain(const ExplainOptions& options, Context& context);
+ExitStatus rank(const RankOptions& options, Context& context);
+ExitStatus sweep(const SweepOptions& options, Context& context);
 ExitStatus reference(const ReferenceOptions& options, Context& context);
 ExitStatus list(const ListOptions& options, Context& context);
 ExitStatus show_entry(const ShowOptions& options, Context& context);

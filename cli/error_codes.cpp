@@ -37,6 +37,28 @@ constexpr ErrorCode kCodes[] = {
      "An image file in place of a scene has its own size, and neither camera nor lights; it is filtered as "
      "it "
      "is."},
+    {"U017", "bad size of the cache",
+     "HWSIM_CACHE_MIB limits the traces kept on disk, in MiB; 0 keeps none."},
+    {"U018", "unknown overlay",
+     "--overlay and --what-if take a name of `hwsim list overlays`; --overlay also a file that ends in "
+     ".toml."},
+    {"U019", "bad axis",
+     "--vary takes path=a,b,c or path=lo..hi:n or path=lo..hi:n:log; --zip wants lists of one length, "
+     "--sample lhs:POINTS."},
+    {"U020", "no result", "The folder or file is not what `hwsim run` writes."},
+    {"U021", "database of a sweep",
+     "The SQLite database cannot be opened or written, is damaged, or was not written by `hwsim sweep`."},
+    {"U022", "bad budget",
+     "--budget is a list of quantity<=number; quantities are aa_ms, frame_ms, extra_mib, memory_mib, "
+     "dram_mb."},
+    {"K001", "damaged file in the cache",
+     "A file that hwsim keeps to save work is cut off, changed, or of another version. It is made anew: "
+     "results "
+     "are not affected."},
+    {"K002", "cache cannot be written",
+     "Traces are kept below $HWSIM_CACHE (else $XDG_CACHE_HOME/hwsim, else ~/.cache/hwsim). Without them "
+     "every "
+     "run emulates again; results are not affected."},
     {"T001", "unknown technique",
      "`hwsim list techniques` lists the names; parameters follow after a colon."},
     {"T002", "unknown parameter of a technique",

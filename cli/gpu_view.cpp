@@ -1,6 +1,7 @@
 #include "cli/gpu_view.h"
 
 #include "cli/files.h"
+#include "cli/overlays.h"
 #include "hwsim/config/settings.h"
 
 namespace hwsim::cli {
@@ -10,7 +11,9 @@ GpuConfig load_gpu_from_options(const std::string& name, const std::vector<std::
   std::vector<Assignment> assignments;
   for (const std::string& text : sets) assignments.push_back(parse_assignment(text));
   check_groups(assignments, std::vector<std::string>{"gpu"});
-  return load_gpu(name, overlays, assignments, gpu_directory());
+  std::vector<std::string> files;
+  for (const std::string& overlay : overlays) files.push_back(overlay_file(overlay));
+  return load_gpu(name, files, assignments, gpu_directory());
 }
 
 Table key_table(const GpuConfig& gpu, bool with_origin) {

@@ -13,7 +13,8 @@ inline constexpr std::string_view kHelpTop = R"(Examples:
   hwsim doctor
 
 Executes an anti-aliasing technique on a scene and predicts its time on a GPU.
-Exit status: 0 done, 1 run failed, 2 usage, 3 invalid input, 130 interrupted.)";
+Exit status: 0 done, 1 run failed, 2 usage, 3 invalid input, 4 check not met, 5 some points failed,
+130 interrupted.)";
 
 inline constexpr std::string_view kHelpRun = R"(Examples:
   hwsim run sponza_hall --technique msaa4x --gpu gtx980
@@ -22,6 +23,41 @@ inline constexpr std::string_view kHelpRun = R"(Examples:
 
 Runs techniques on a scene: images, time of each pass, the unit that limits it. A run.toml of
 an earlier run may stand for the scene: it gives the same numbers again.)";
+
+inline constexpr std::string_view kHelpCompare = R"(Examples:
+  hwsim compare sponza_hall -t msaa8x -g gtx980 --what-if rops-x2,l2-x4 --resolution 320x180
+  hwsim compare sponza_hall -t msaa4x --set gpu.dram_bandwidth_gb_s=x0.5 --resolution 320x180
+  hwsim compare sponza_hall -t none,msaa4x --resolution 320x180 --format csv
+
+Compares results pass by pass: those of earlier runs (give their folders), or one scene before
+and after --set and --overlay, for each --what-if, each point of --vary, each technique and GPU.
+The first result is the baseline; a change is (new - old) / |old|.)";
+
+inline constexpr std::string_view kHelpExplain = R"(Examples:
+  hwsim explain sponza_hall -t msaa8x -g gtx980 --resolution 320x180
+  hwsim explain sponza_hall -t none,msaa4x --resolution 320x180
+  hwsim explain sponza_hall -t msaa4x --resolution 320x180 --all --format csv
+
+Says why a frame takes its time: the busiest units and the time stack of each pass, what the frame
+would gain if a unit took no time, and how much each number of the GPU matters (exact derivatives
+of the timing engine). With two techniques or GPUs, also where they differ.)";
+
+inline constexpr std::string_view kHelpRank = R"(Examples:
+  hwsim rank sponza_hall -t msaa4x,msaa8x -g gtx980 --resolution 320x180 --reference 4
+  hwsim rank sponza_hall -t msaa4x,ssaa4x --budget "aa_ms<=0.1, extra_mib<=8" --resolution 320x180 --reference 4
+
+Ranks techniques (all, unless -t names some) on one scene and GPU: time, memory, bytes and error of
+the image, the Pareto front of time and error, and what each is under a budget: ok, at risk, over
+time, over memory, unsupported. Writes crops of the worst regions side by side: contact_sheet.png.)";
+
+inline constexpr std::string_view kHelpSweep = R"(Examples:
+  hwsim sweep sponza_hall -t none,msaa4x --vary gpu.l2_size_kib=256..4096:5:log --resolution 320x180
+  hwsim sweep sponza_hall -t msaa8x --vary gpu.core_clock_mhz=800..1600 --sample lhs:16 --db s.sqlite --dry-run
+  hwsim sweep --format csv
+
+Runs many points: techniques, GPUs, and settings varied over lists and ranges. Every point is
+written to the database before the first one runs, each result as it comes: --resume goes on
+after an interruption. Without a scene, prints what the database holds.)";
 
 inline constexpr std::string_view kHelpReference = R"(Examples:
   hwsim reference sponza_hall --resolution 320x180 --samples 4
@@ -34,7 +70,7 @@ inline constexpr std::string_view kHelpList = R"(Examples:
   hwsim list techniques --format md
   hwsim list counters --json
 
-Lists what hwsim knows: gpus, scenes, techniques, counters or tables.)";
+Lists what hwsim knows: gpus, scenes, techniques, counters, overlays or tables.)";
 
 inline constexpr std::string_view kHelpShow = R"(Examples:
   hwsim show gtx980 --origin
@@ -101,7 +137,7 @@ inline constexpr std::string_view kHelpCache = R"(Examples:
   hwsim cache list
   hwsim cache prune --older-than 30
 
-Lists and removes what is kept on disk: generated scenes and references.)";
+Lists and removes what is kept on disk: generated scenes, references, and traces of emulated frames.)";
 
 inline constexpr std::string_view kHelpCacheList = R"(Examples:
   hwsim cache list
@@ -112,6 +148,7 @@ Lists the files below $HWSIM_CACHE (else $XDG_CACHE_HOME/hwsim, else ~/.cache/hw
 inline constexpr std::string_view kHelpCachePrune = R"(Examples:
   hwsim cache prune --dry-run
   hwsim cache prune --older-than 30
+  hwsim cache prune --keep-mib 512
 
 Removes old files from the cache; they are made anew when they are needed.)";
 

@@ -26,6 +26,10 @@ ExitStatus dispatch(const Command& command, Context& context) {
                                  return ExitStatus::done;
                                },
                                [&](const RunOptions& o) { return run(o, context); },
+                               [&](const CompareOptions& o) { return compare(o, context); },
+                               [&](const ExplainOptions& o) { return explain(o, context); },
+                               [&](const RankOptions& o) { return rank(o, context); },
+                               [&](const SweepOptions& o) { return sweep(o, context); },
                                [&](const ReferenceOptions& o) { return reference(o, context); },
                                [&](const ListOptions& o) { return list(o, context); },
                                [&](const ShowOptions& o) { return show_entry(o, context); },

@@ -1,5 +1,6 @@
 #pragma once
 // What the command line says, as plain data. Filled by arguments.cpp, the only file that knows CLI11.
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
@@ -28,6 +29,7 @@ struct CommonOptions {
 struct Resolution {
   int width_px = 1280;
   int height_px = 720;
+  bool operator==(const Resolution&) const = default;
 };
 
 /// What is drawn, before any technique.
@@ -53,6 +55,38 @@ struct RunOptions {
   std::optional<std::string> engine;
   std::optional<int> reference_samples;
   bool no_image = false;
+  bool no_cache = false;
+};
+
+/// One scene's results side by side, or results of earlier runs.
+struct CompareOptions : RunOptions {
+  std::vector<std::string> inputs;  ///< a scene, or folders of results
+  std::vector<std::string> what_ifs, vary;
+  bool zip = false;
+  bool counters = false;
+};
+
+/// Why a frame takes its time.
+struct ExplainOptions : RunOptions {
+  bool all = false;  ///< parameters without influence too
+};
+
+/// Techniques under a budget.
+struct RankOptions : RunOptions {
+  std::string budget;  ///< "aa_ms<=1.5, extra_mib<=192"
+};
+
+/// Many points in a database.
+struct SweepOptions : RunOptions {
+  std::vector<std::string> vary;
+  bool zip = false;
+  std::optional<std::string> sample;  ///< "lhs:64"
+  std::uint64_t seed = 1;
+  std::string database = "sweep.sqlite";
+  bool resume = false;
+  bool dry_run = false;
+  std::optional<std::string> shard;  ///< "1/4"
+  std::vector<std::string> merge;
 };
 
 struct ReferenceOptions {
@@ -102,6 +136,8 @@ struct CacheOptions {
   bool prune = false;
   bool all = false;
   int older_than_days = 30;
+  std::optional<std::uint32_t>
+      keep_mib;  ///< instead of the age: the least recently used go until so much is left
   bool dry_run = false;
 };
 
@@ -132,8 +168,9 @@ struct PrintText {
   std::string text;
 };
 
-using Command = std::variant<PrintText, RunOptions, ReferenceOptions, ListOptions, ShowOptions,
-                             SceneCheckOptions, ConfigOptions, DoctorOptions, HelpOptions, CacheOptions,
-                             FitOptions, ValidateOptions, ReproduceOptions, CompletionOptions>;
+using Command =
+    std::variant<PrintText, RunOptions, ExplainOptions, RankOptions, CompareOptions, SweepOptions,
+                 ReferenceOptions, ListOptions, ShowOptions, SceneCheckOptions, ConfigOptions, DoctorOptions,
+                 HelpOptions, CacheOptions, FitOptions, ValidateOptions, ReproduceOptions, CompletionOptions>;
 
 }  // namespace hwsim::cli

@@ -11,6 +11,7 @@
 #include "cli/help_texts.h"
 #include "cli/image_input.h"
 #include "cli/messages.h"
+#include "cli/overlays.h"
 #include "cli/run_file.h"
 #include "cli/table.h"
 #include "hwsim/config/settings.h"
@@ -195,8 +196,14 @@ std::vector<GpuConfig> plan_gpus(const std::vector<std::string>& names,
                                  const std::vector<Assignment>& sets, std::vector<Diagnostic>& problems) {
   std::vector<GpuConfig> gpus;
   const std::string directory = gpu_directory();
+  std::vector<std::string> files;
+  for (const std::string& overlay : overlays) try {
+      files.push_back(overlay_file(overlay));
+    } catch (const InputError& error) {
+      append(problems, error);
+    }
   for (const std::string& name : names) try {
-      gpus.push_back(load_gpu(name, overlays, sets, directory));
+      gpus.push_back(load_gpu(name, files, sets, directory));
     } catch (const InputError& error) {
       append(problems, error);
     }

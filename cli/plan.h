@@ -23,6 +23,7 @@ struct ViewPlan {
   algos::LightProfile lights = algos::LightProfile::scene;
   bool shadows = true;
   int shadow_map_px = 2048;
+  bool operator==(const ViewPlan&) const = default;
 };
 
 struct RunPlan {

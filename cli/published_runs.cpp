@@ -21,39 +21,39 @@ using cost_models::RunSpec;
 
 std::string published_directory() { return (fs::path(config_directory()) / "published").string(); }
 
-/// Traces of runs, emulated as `run` would.
+/// Traces of runs, as `run` would make them: from the cache where it has them.
 class RunTraces {
  public:
-  explicit RunTraces(const CommonOptions& options) : options_(options) {}
+  RunTraces(const CommonOptions& options, Context& context)
+      : store_({.jobs = options.jobs, .disk = true}, context.log), silent_(quiet(), context.terminal) {}
 
   std::shared_ptr<const WorkTrace> trace(const RunSpec& spec, const GpuConfig& gpu) {
-    RunPlan plan;
-    plan.view.scene = spec.scene;
-    plan.view.camera = spec.camera;
-    plan.view.resolution = {spec.width_px, spec.height_px};
-    plan.view.point_lights = spec.point_lights;
-    plan.view.shadows = spec.shadows;
+    ViewPlan view;
+    view.scene = spec.scene;
+    view.camera = spec.camera;
+    view.resolution = {spec.width_px, spec.height_px};
+    view.point_lights = spec.point_lights;
+    view.shadows = spec.shadows;
     const algos::TechniqueChoice technique = algos::parse_technique(spec.technique);
-    const std::string key = fmt::format("{}|{}|{}x{}|{}|{}|{}|{}", spec.scene, spec.camera, spec.width_px,
-                                        spec.height_px, spec.point_lights, spec.shadows,
-                                        algos::technique_text(technique, true), functional_hash(gpu));
-    std::shared_ptr<const WorkTrace>& known = traces_[key];
-    if (known) return known;
-    if (scene_key_ != spec.scene + "|" + spec.camera) {
-      loaded_ = load_view(plan.view);
-      scene_key_ = spec.scene + "|" + spec.camera;
-    }
-    Simulator simulator(plan, loaded_, nullptr, options_.jobs);
-    const PointResult point = simulator.run(technique, gpu, [](double, const std::string&) {});
-    known = std::make_shared<const WorkTrace>(point.emulation->trace);  // without the image
+    if (!scene_ || !(scene_->plan() == view)) scene_ = std::make_unique<SceneView>(view, silent_);
+    std::shared_ptr<const WorkTrace>& known =
+        traces_[TraceStore::work_text(*scene_, technique, gpu, FrameNeeds{})];
+    if (!known)  // a copy: without the image that a fresh emulation carries
+      known = std::make_shared<const WorkTrace>(
+          store_.frame(*scene_, technique, gpu, FrameNeeds{}, nullptr).emulation->trace);
     return known;
   }
 
  private:
-  CommonOptions options_;
+  static CommonOptions quiet() {
+    CommonOptions options;
+    options.verbosity = -1;
+    return options;
+  }
+  TraceStore store_;
+  Log silent_;  // the loader's notes on stand-in scenes
+  std::unique_ptr<SceneView> scene_;
   std::map<std::string, std::shared_ptr<const WorkTrace>> traces_;
-  LoadedScene loaded_;
-  std::string scene_key_;
 };
 
 std::string lower(std::string text) {
@@ -101,7 +101,7 @@ Experiment load_experiment(std::vector<cost_models::Cell> cells, const CommonOpt
     if (cell.has_run && !gpus.contains(cell.run.gpu))
       gpus.emplace(cell.run.gpu, load_gpu(cell.run.gpu, {}, {}, gpu_directory()));
   Progress progress(options, context.terminal);
-  RunTraces traces(options);
+  RunTraces traces(options, context);
   Experiment experiment = cost_models::make_experiment(
       std::move(cells), gpus, (fs::path(config_directory()) / "calibration" / "parameters.csv").string(),
       [&](const RunSpec& spec, const GpuConfig& gpu) { return traces.trace(spec, gpu); },

@@ -13,25 +13,25 @@ namespace hwsim::cli {
 namespace {
 
 /// Everything that the image depends on.
-std::string reference_key(const ViewPlan& view, const LoadedScene& loaded, int samples) {
-  return fmt::format("{}|{}|{}|{}x{}|{}|{}|{}|{}", algos::kReferenceVersion, loaded.scene->content_hash,
-                     loaded.camera, view.resolution.width_px, view.resolution.height_px, view.point_lights,
+std::string reference_key(const SceneView& scene, int samples) {
+  const ViewPlan& view = scene.plan();
+  return fmt::format("{}|{}|{}|{}x{}|{}|{}|{}|{}", algos::kReferenceVersion, scene.summary().content_hash,
+                     scene.camera(), view.resolution.width_px, view.resolution.height_px, view.point_lights,
                      light_profile_name(view.lights), view.shadows, samples);
 }
 
 }  // namespace
 
-ReferenceImage make_reference(const ViewPlan& view, const LoadedScene& loaded, int samples, int jobs,
-                              const ProgressFunction& progress) {
+ReferenceImage make_reference(SceneView& scene, int samples, int jobs, const ProgressFunction& progress) {
   const auto start = std::chrono::steady_clock::now();
   const std::filesystem::path folder = cache_directory(CacheFolder::references);
-  const std::string path = (folder / (hash_hex(reference_key(view, loaded, samples)) + ".exr")).string();
+  const std::string path = (folder / (hash_hex(reference_key(scene, samples)) + ".exr")).string();
   std::error_code error;
   ReferenceImage result;
   result.samples = samples;
   result.from_cache = std::filesystem::exists(path, error);
   if (!result.from_cache) {
-    const algos::FrameRequest request = frame_request(view, loaded);
+    const algos::FrameRequest request = scene.frame_request();
     algos::ReferenceFrameOptions options;
     options.samples = samples;
     options.jobs = jobs;

@@ -114,7 +114,7 @@ Json result_json(const PointResult& point, const RunPlan& plan, const std::strin
   Json skipped = Json::object();
   for (const auto& [name, count] : point.emulation->skipped) skipped[name] = count;
   json["emulation"] = {
-      {"wall_s", point.emulation->wall_s}, {"from_cache", point.emulation_reused}, {"skipped", skipped}};
+      {"wall_s", point.emulation->wall_s}, {"from_cache", point.from_cache}, {"skipped", skipped}};
   json["timing"] = {{"wall_s", point.timing_wall_s}};
   for (const Diagnostic& warning : result_warnings(point)) json["warnings"].push_back(warning.message);
   return json;

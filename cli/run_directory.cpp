@@ -87,7 +87,7 @@ void RunDirectory::point_latest_here() const {
   if (error) fs::remove(fresh, error);  // a file system without links: the run itself is complete
 }
 
-InterruptGuard::InterruptGuard() {
+InterruptGuard::InterruptGuard(std::string message) : message_("\n" + std::move(message) + "\n") {
   sigset_t set;
   sigemptyset(&set);
   for (const int signal : {SIGINT, SIGTERM, SIGUSR2}) sigaddset(&set, signal);
@@ -111,8 +111,7 @@ void InterruptGuard::wait() {
   std::error_code ignored;
   // Other threads may be creating files in it: two attempts, then the name still says that it is partial.
   for (int attempt = 0; attempt < 2 && !folder_.empty(); ++attempt) fs::remove_all(folder_, ignored);
-  constexpr std::string_view kMessage = "\ninterrupted: nothing was kept\n";
-  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kMessage.data(), kMessage.size());
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, message_.data(), message_.size());
   ::_exit(128 + signal);
 }
 

@@ -36,7 +36,7 @@ class RunDirectory {
 /// it first.
 class InterruptGuard {
  public:
-  InterruptGuard();
+  explicit InterruptGuard(std::string message = "interrupted: nothing was kept");
   ~InterruptGuard();
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
@@ -47,6 +47,7 @@ class InterruptGuard {
   void wait();
 
   std::mutex mutex_;
+  std::string message_;
   std::filesystem::path folder_;
   std::thread thread_;
 };

@@ -110,17 +110,6 @@ void check_kind(Reader& reader, const toml::table& table) {
   if (kind != "run") reader.add("C019", "kind is `" + kind + "`, must be `run`", where("kind"));
 }
 
-std::string skip_text(const pipeline::SkipSwitches& skip) {
-  std::string names;
-  std::size_t count = 0;
-  for (const pipeline::SkipInfo& info : pipeline::kSkips) {
-    if (!(skip.*info.flag)) continue;
-    names += (count++ == 0 ? "" : ",") + std::string(info.name);
-  }
-  if (count == pipeline::kSkips.size()) return "all";
-  return count == 0 ? "none" : names;
-}
-
 std::string quoted(const std::string& text) { return to_toml(TomlValue(text)); }
 
 }  // namespace
@@ -156,6 +145,17 @@ RunFile read_run_file(const std::string& path) {
                                                    : resolve(file.view.scene, path, {".gltf", ".glb"});
   file.gpu = resolve(file.gpu, path, {".toml"});
   return file;
+}
+
+std::string skip_text(const pipeline::SkipSwitches& skip) {
+  std::string names;
+  std::size_t count = 0;
+  for (const pipeline::SkipInfo& info : pipeline::kSkips) {
+    if (!(skip.*info.flag)) continue;
+    names += (count++ == 0 ? "" : ",") + std::string(info.name);
+  }
+  if (count == pipeline::kSkips.size()) return "all";
+  return count == 0 ? "none" : names;
 }
 
 std::string run_file_text(const RunPlan& plan, const algos::TechniqueChoice& technique,

@@ -18,6 +18,9 @@ struct RunFile {
 /// Throws InputError with every problem in the file. Paths in it are relative to the file.
 RunFile read_run_file(const std::string& path);
 
+/// "all", "none", or the names of those that are on.
+std::string skip_text(const pipeline::SkipSwitches& skip);
+
 /// The text of a run.toml for one point of a plan; `gpu_file` stands beside it.
 std::string run_file_text(const RunPlan& plan, const algos::TechniqueChoice& technique,
                           const std::string& gpu_file);

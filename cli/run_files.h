@@ -16,7 +16,7 @@ void write_point_files(const std::string& folder, const PointResult& point, cons
 struct ManifestInput {
   const Context* context = nullptr;
   const RunPlan* plan = nullptr;
-  const pipeline::Scene* scene = nullptr;  ///< none: not loaded yet
+  const SceneSummary* scene = nullptr;  ///< none: not loaded yet
   double wall_s = 0.0;
   std::uint64_t fragments = 0;  ///< shaded by emulations of this run
   double emulation_s = 0.0;

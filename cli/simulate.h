@@ -7,8 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "cli/plan.h"
-#include "pipeline/image/image_io.h"
+#include "cli/trace_store.h"
 #include "pipeline/image/metrics.h"
 
 namespace hwsim::cli {
@@ -20,18 +19,6 @@ class InternalError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-struct LoadedScene {
-  std::shared_ptr<const pipeline::Scene> scene;
-  int camera = 0;
-  std::shared_ptr<const pipeline::RawImage> image;  ///< stands for the scene, which is empty then
-};
-
-/// Loads the scene and finds the camera by name or index. Throws InputError.
-LoadedScene load_view(const ViewPlan& view);
-
-/// The frame without a GPU: features and limits are still to be set.
-algos::FrameRequest frame_request(const ViewPlan& view, const LoadedScene& loaded);
-
 struct ReferenceImage {
   pipeline::Image image;
   int samples = 0;
@@ -39,17 +26,14 @@ struct ReferenceImage {
   bool from_cache = false;
 };
 
-using ProgressFunction = std::function<void(double done_ratio, const std::string& what)>;
-
 /// Ray-traces the view, or takes it from the cache.
-ReferenceImage make_reference(const ViewPlan& view, const LoadedScene& loaded, int samples, int jobs,
-                              const ProgressFunction& progress);
+ReferenceImage make_reference(SceneView& scene, int samples, int jobs, const ProgressFunction& progress);
 
 struct PointResult {
   const algos::TechniqueChoice* technique = nullptr;
   const GpuConfig* gpu = nullptr;
   std::shared_ptr<const pipeline::Emulation> emulation;
-  bool emulation_reused = false;  ///< an earlier point of this run emulated the same work
+  bool from_cache = false;  ///< an earlier point, or an earlier run, emulated the same work
   FrameTiming timing;
   double timing_wall_s = 0.0;
   std::optional<pipeline::ImageError> image_error;
@@ -59,23 +43,17 @@ struct PointResult {
 /// Runs the points of one plan; GPUs that share a functional configuration share an emulation.
 class Simulator {
  public:
-  Simulator(const RunPlan& plan, LoadedScene loaded, const ReferenceImage* reference, int jobs);
+  Simulator(const RunPlan& plan, SceneView& scene, const ReferenceImage* reference, TraceStore& store)
+      : plan_(plan), scene_(scene), reference_(reference), store_(store) {}
   /// Throws InputError, or InternalError when an invariant is violated.
   PointResult run(const algos::TechniqueChoice& technique, const GpuConfig& gpu,
                   const ProgressFunction& progress);
 
  private:
-  std::shared_ptr<const pipeline::Emulation> emulate(const algos::TechniqueChoice& technique,
-                                                     const GpuConfig& gpu, const ProgressFunction& progress,
-                                                     bool& reused);
-  void measure_image(PointResult& point);
-
   const RunPlan& plan_;
-  LoadedScene loaded_;
+  SceneView& scene_;
   const ReferenceImage* reference_;
-  int jobs_;
-  std::string last_key_;
-  std::shared_ptr<const pipeline::Emulation> last_emulation_;
+  TraceStore& store_;
 };
 
 /// The invariants of every run; throws InternalError with all that are violated.

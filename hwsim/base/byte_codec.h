@@ -82,6 +82,7 @@ class ByteReader {
     if (value > bytes_.size()) throw DamagedBytes("a list is longer than the file");
     return static_cast<std::size_t>(value);
   }
+  std::span<const std::uint8_t> rest() { return take(bytes_.size()); }
   void expect_end() const {
     if (!bytes_.empty()) throw DamagedBytes("bytes follow the end");
   }

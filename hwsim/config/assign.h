@@ -19,6 +19,13 @@ bool assign(const Key& key, const TomlValue& value, const SourcePlace& place,
 /// The range check alone, for values set in code.
 std::optional<Diagnostic> check_range(const Key& key);
 
+/// The factor of "x2" or "x0.5", a value relative to what lies below it; none for keys that hold no number,
+/// and for anything else.
+std::optional<double> scale_factor(const Key& key, const TomlValue& value);
+
+/// A number times a factor, whole where the product is; anything else as it is (its type is checked later).
+TomlValue scaled(const TomlValue& value, double factor);
+
 /// The value in a slot, as an integer, real, boolean or text.
 TomlValue value_in(const KeySlot& slot);
 

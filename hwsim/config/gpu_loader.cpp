@@ -138,6 +138,8 @@ class Loader {
         has_kind = true;
         if (!text || *text != kind)
           complain_header("`kind` must be \"" + kind + "\" here", entry.value_place);
+      } else if (entry.path == "about" && kind == "overlay") {
+        if (!text) complain_header("`about` must be a text", entry.value_place);
       } else if (entry.path == "id" || entry.path == "extends") {
         if (!text || text->empty()) complain_header("`" + entry.path + "` must be a text", entry.value_place);
         if (text) (entry.path == "id" ? header.id : header.extends) = *text;
@@ -238,6 +240,7 @@ class Loader {
       problems_.push_back(std::move(d));
       return;
     }
+    scale_inherited(*key, resolved.entry);
     if (!resolved.entry.value) {
       Diagnostic d;
       d.code = "C013";
@@ -248,6 +251,15 @@ class Loader {
       problems_.push_back(std::move(d));
     }
     resolved_.insert_or_assign(name, std::move(resolved));
+  }
+
+  /// "x2" doubles what the layers below say. Derived values follow, because they are derived last.
+  void scale_inherited(const Key& key, TomlEntry& entry) {
+    const auto factor = entry.value ? scale_factor(key, *entry.value) : std::nullopt;
+    if (!factor) return;
+    const auto below = resolved_.find(key.info.name);
+    const bool has_value = below != resolved_.end() && below->second.entry.value;
+    entry.value = scaled(has_value ? *below->second.entry.value : value_in(key.slot), *factor);
   }
 
   void settle(const Key& key) {

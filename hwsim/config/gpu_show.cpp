@@ -88,6 +88,9 @@ nlohmann::ordered_json key_schema(const Key& key) {
   schema["description"] = std::string(key.info.description);
   if (!key.info.has(kRequired)) schema["default"] = default_json(value_in(key.slot));
   schema["anyOf"] = nlohmann::ordered_json::array({scalar_schema(key), annotated});
+  const bool number = std::holds_alternative<double*>(key.slot) || std::holds_alternative<int*>(key.slot);
+  if (number)  // a factor on what is inherited
+    schema["anyOf"].push_back({{"type", "string"}, {"pattern", "^x[0-9]*[.]?[0-9]+(e[+-]?[0-9]+)?$"}});
   return schema;
 }
 
@@ -95,6 +98,7 @@ nlohmann::ordered_json header_schema() {
   return {
       {"schema", {{"const", 1}}},
       {"kind", {{"enum", {"gpu", "overlay"}}}},
+      {"about", {{"type", "string"}, {"description", "of an overlay: one sentence"}}},
       {"id", {{"type", "string"}}},
       {"extends", {{"type", "string"}, {"description", "id, or path relative to this file; one parent"}}}};
 }

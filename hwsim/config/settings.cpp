@@ -1,6 +1,7 @@
 #include "hwsim/config/settings.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "hwsim/config/assign.h"
@@ -72,6 +73,27 @@ bool assign(const Key& key, const TomlValue& value, const SourcePlace& place,
   else
     *std::get<double*>(key.slot) = *number;
   return true;
+}
+
+std::optional<double> scale_factor(const Key& key, const TomlValue& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  if (is_switch_or_text(key) || !text || text->size() < 2 || text->front() != 'x') return std::nullopt;
+  double factor = 0.0;
+  const char* const end = text->data() + text->size();
+  const auto [stop, error] = std::from_chars(text->data() + 1, end, factor);
+  if (error != std::errc() || stop != end || !std::isfinite(factor)) return std::nullopt;
+  return factor;
+}
+
+TomlValue scaled(const TomlValue& value, double factor) {
+  const auto* whole = std::get_if<std::int64_t>(&value);
+  const auto* real = std::get_if<double>(&value);
+  if (!whole && !real) return value;
+  const double product = (whole ? static_cast<double>(*whole) : *real) * factor;
+  constexpr double kExact = 9007199254740992.0;  // 2^53: whole numbers below are doubles
+  if (whole && product == std::floor(product) && std::abs(product) < kExact)
+    return static_cast<std::int64_t>(product);
+  return product;
 }
 
 TomlValue value_in(const KeySlot& slot) {

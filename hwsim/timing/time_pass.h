@@ -93,8 +93,8 @@ void queue_time(PassTime<T>& time, const std::vector<ChunkCost<T>>& costs, const
 
 /// `waits`: the pass begins after everything before it has drained, and pays for that.
 template <class T>
-PassTime<T> time_pass(const PassWork& pass, const GpuRates<T>& rates, Engine engine, bool waits) {
-  const std::vector<ChunkCost<T>> costs = chunk_costs(pass, rates);
+PassTime<T> time_costs(const std::vector<ChunkCost<T>>& costs, const GpuRates<T>& rates, Engine engine,
+                       bool waits) {
   PassTime<T> time;
   for (const ChunkCost<T>& cost : costs) {
     for (std::size_t u = 0; u < kUnitCount; ++u) time.busy_ns[u] += cost.ns[u];
@@ -109,6 +109,11 @@ PassTime<T> time_pass(const PassWork& pass, const GpuRates<T>& rates, Engine eng
   time.time_ns += time.overhead_ns;
   time.stack_ns[at(Unit::fe)] += time.overhead_ns;
   return time;
+}
+
+template <class T>
+PassTime<T> time_pass(const PassWork& pass, const GpuRates<T>& rates, Engine engine, bool waits) {
+  return time_costs(chunk_costs(pass, rates), rates, engine, waits);
 }
 
 }  // namespace hwsim

@@ -29,7 +29,7 @@ class BinDepth {
   CoarseResult test_coarse(const RasterTriangle& t, int x, int y, DepthPlane& plane, PassCounters& n) const {
     if (c_.depth == nullptr) return CoarseResult::ambiguous;
     plane = plane_over_tile(t, x, y, c_.depth_scale);
-    if (!w_.state->depth.test) return CoarseResult::ambiguous;
+    if (!w_.state->depth.test || !c_.hierarchical_z) return CoarseResult::ambiguous;
     const auto block = static_cast<std::size_t>(c_.depth->block_index(x, y, layer_));
     n.hiz.tested_tiles += 1;
     CoarseResult result = compare_bounds(w_.state->depth.compare, plane.nearest, plane.farthest,

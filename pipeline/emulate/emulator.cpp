@@ -153,6 +153,7 @@ class FrameRunner {
 
   PassContext make_context(const Pass& pass) {
     PassContext c;
+    c.hierarchical_z = functional_.hierarchical_z;
     c.pass = &pass;
     c.width = pass.width;
     c.height = pass.height;

@@ -32,6 +32,7 @@ struct PassContext {
   int heat_blocks_x = 0;
   int heat_shift = 0;  ///< the heat image's pixels are this much coarser (log2)
   SkipSwitches skip;
+  bool hierarchical_z = true;
 };
 
 /// The covered samples of a quad: bit i of masks[s] is its lane i.

@@ -153,6 +153,7 @@ Scene load_gltf(const std::string& path, const SceneLoadOptions& options) {
   add_view_and_light(scene, report, model, nodes);
   scene.textures = gltf::build_textures(report, source, set.textures);
   scene.content_hash = source.content_hash;
+  scene.files = source.files;
   scene.notes = report.notes();
   return scene;
 }

@@ -139,6 +139,7 @@ struct Scene {
   glm::vec3 background{0.2f, 0.3f, 0.45f};  ///< linear
   std::vector<Diagnostic> notes;            ///< what the loader ignored, generated or clamped
   std::string content_hash;                 ///< hex, of everything that was read
+  std::vector<std::string> files;           ///< that were read, or looked for and missing; absolute paths
 };
 
 struct SceneStats {

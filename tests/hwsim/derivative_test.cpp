@@ -1,87 +1,102 @@
-// The engines over a scalar that carries a derivative, as the fit uses them: checked against finite
-// differences.
+// The engines over a scalar that carries derivatives: checked against finite differences.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "hwsim/config/gpu_keys.h"
 #include "hwsim/sample_gpu.h"
-#include "hwsim/timing/time_pass.h"
+#include "hwsim/timing/sensitivity.h"
 
 namespace hwsim::test {
 namespace {
 
-/// A value and its derivative: the least that an automatic-differentiation type offers.
-struct Dual {
-  double v = 0.0, d = 0.0;
-  Dual() = default;
-  explicit Dual(double value, double derivative = 0.0) : v(value), d(derivative) {}
-  Dual& operator+=(const Dual& b) { return *this = Dual(v + b.v, d + b.d); }
-  Dual& operator-=(const Dual& b) { return *this = Dual(v - b.v, d - b.d); }
-  Dual& operator*=(const Dual& b) { return *this = Dual(v * b.v, d * b.v + v * b.d); }
-  Dual& operator+=(double b) { return *this = Dual(v + b, d); }
-  friend Dual operator+(Dual a, const Dual& b) { return a += b; }
-  friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
-  friend Dual operator*(Dual a, const Dual& b) { return a *= b; }
-  friend Dual operator/(const Dual& a, const Dual& b) {
-    return Dual(a.v / b.v, (a.d * b.v - a.v * b.d) / (b.v * b.v));
-  }
-  friend Dual operator+(double a, const Dual& b) { return Dual(a) + b; }
-  friend Dual operator+(const Dual& a, double b) { return a + Dual(b); }
-  friend Dual operator-(double a, const Dual& b) { return Dual(a) - b; }
-  friend Dual operator-(const Dual& a, double b) { return a - Dual(b); }
-  friend Dual operator*(double a, const Dual& b) { return Dual(a) * b; }
-  friend Dual operator*(const Dual& a, double b) { return a * Dual(b); }
-  friend Dual operator/(double a, const Dual& b) { return Dual(a) / b; }
-  friend Dual operator/(const Dual& a, double b) { return a / Dual(b); }
-  friend bool operator<(const Dual& a, const Dual& b) { return a.v < b.v; }
-  friend bool operator>(const Dual& a, const Dual& b) { return a.v > b.v; }
-  friend Dual sqrt(const Dual& a) { return Dual(std::sqrt(a.v), a.d / (2.0 * std::sqrt(a.v))); }
-  friend Dual pow(const Dual& a, const Dual& b) {
-    const double p = std::pow(a.v, b.v);
-    return Dual(p, p * (b.d * std::log(a.v) + b.v * a.d / a.v));
-  }
-};
+WorkTrace busy_trace() {
+  WorkTrace trace;
+  trace.passes = {busy_pass(70), fill_pass(Format::rgba16_float, true, 4096, 3)};
+  trace.passes[1].barrier_before = true;
+  return trace;
+}
 
-/// Copies the numbers of a config to duals; the key `seeded` gets derivative one.
-struct ToDual {
-  std::vector<Key> keys;
-  std::string_view seeded;
-  std::size_t next = 0;
-  void key(const KeyInfo& info, Dual& value) {
-    value = Dual(*std::get<double*>(keys[next++].slot), info.name == seeded ? 1.0 : 0.0);
-  }
-  void key(const KeyInfo&, int& value) { value = *std::get<int*>(keys[next++].slot); }
-  void key(const KeyInfo&, bool& value) { value = *std::get<bool*>(keys[next++].slot); }
-};
+GpuConfig busy_gpu() {
+  GpuConfig gpu = sample_gpu();
+  gpu.dram_bandwidth_gb_s = 60.0;
+  gpu.pass_overhead_us = 2.0;
+  return gpu;
+}
 
-TEST(Derivative, OfEveryFittedKeyEqualsTheFiniteDifference) {
-  GpuValues<double> base = sample_gpu();
-  base.dram_bandwidth_gb_s = 60.0;
-  base.pass_overhead_us = 2.0;
-  const PassWork pass = busy_pass(70);
-  int nonzero = 0;
-  for (const Engine engine : {Engine::roofline, Engine::queue})
-    for (const Key& key : keys_of(base)) {
-      auto* const* slot = std::get_if<double*>(&key.slot);
-      if (!slot || !key.info.has(kFit)) continue;
-      GpuValues<Dual> duals;
-      ToDual to_dual{keys_of(base), key.info.name};
-      describe(to_dual, duals);
-      const Dual exact = time_pass(pass, derive_rates<Dual>(duals), engine, true).time_ns;
-      const double value = **slot, step = std::max(1e-6, 1e-6 * value);
+double& slot_of(GpuConfig& gpu, const std::vector<Key>& keys, std::string_view name) {
+  (void)gpu;  // the keys point into it
+  return *std::get<double*>(
+      std::find_if(keys.begin(), keys.end(), [&](const Key& key) { return key.info.name == name; })->slot);
+}
+
+TEST(Derivative, OfEveryRealKeyEqualsTheFiniteDifference) {
+  GpuConfig gpu = busy_gpu();
+  const std::vector<Key> keys = keys_of(static_cast<GpuValues<double>&>(gpu));
+  const WorkTrace trace = busy_trace();
+  std::size_t nonzero = 0;
+  for (const Engine engine : {Engine::roofline, Engine::queue}) {
+    const std::vector<Sensitivity> all = sensitivities(trace, gpu, engine);
+    EXPECT_EQ(all.size(),
+              static_cast<std::size_t>(std::count_if(keys.begin(), keys.end(), [](const Key& key) {
+                return std::holds_alternative<double*>(key.slot);
+              })));
+    const double frame_ns = time_frame(trace, gpu, engine).time_ns;
+    for (const Sensitivity& s : all) {
+      double& slot = slot_of(gpu, keys, s.key);
+      const double value = slot, step = std::max(1e-6, 1e-6 * std::abs(value));
       const auto time_at = [&](double x) {
-        **slot = x;
-        return time_pass(pass, derive_rates<double>(base), engine, true).time_ns;
+        slot = x;
+        return time_frame(trace, gpu, engine).time_ns;
       };
-      const double slope = (time_at(value + step) - time_at(value - step)) / (2.0 * step);
-      **slot = value;
-      EXPECT_DOUBLE_EQ(exact.v, time_at(value));
-      EXPECT_NEAR(exact.d, slope, 1e-3 * std::abs(slope) + 1e-2)
-          << key.info.name << " in " << engine_name(engine);
-      nonzero += exact.d != 0.0 ? 1 : 0;
+      const double above = (time_at(value + step) - frame_ns) / step;
+      const double below = (frame_ns - time_at(value - step)) / step;
+      slot = value;
+      // At a kink the derivative is that of one side.
+      const double error = std::min(std::abs(s.slope_ns - above), std::abs(s.slope_ns - below));
+      EXPECT_LE(error, 2e-3 * std::max(std::abs(above), std::abs(below)) + 5e-2)
+          << s.key << " in " << engine_name(engine) << ": " << s.slope_ns << ", " << below << " to " << above;
+      EXPECT_DOUBLE_EQ(s.elasticity, s.slope_ns * value / frame_ns) << s.key;
+      nonzero += s.slope_ns != 0.0 ? 1 : 0;
     }
-  EXPECT_GT(nonzero, 10);
+  }
+  EXPECT_GT(nonzero, 20u);
+}
+
+// Time is homogeneous: with every clock and bandwidth doubled and every fixed cost halved it halves.
+TEST(Derivative, OfRatesSumsToMinusOne) {
+  GpuConfig gpu = busy_gpu();
+  double sum = 0.0;
+  for (const Sensitivity& s : sensitivities(busy_trace(), gpu, Engine::queue)) {
+    if (s.key == "core_clock_mhz" || s.key == "dram_bandwidth_gb_s") sum += s.elasticity;
+    if (s.key == "pass_overhead_us") sum -= s.elasticity;
+  }
+  EXPECT_NEAR(sum, -1.0, 1e-9);
+}
+
+TEST(Headroom, TakingAUnitAwayNeverSlowsAndTheLimiterGainsMost) {
+  const GpuConfig gpu = busy_gpu();
+  const WorkTrace trace = busy_trace();
+  for (const Engine engine : {Engine::roofline, Engine::queue}) {
+    const double frame_ns = time_frame(trace, gpu, engine).time_ns;
+    const std::vector<UnitHeadroom> units = headroom(trace, gpu, engine);
+    ASSERT_GT(units.size(), 5u);
+    for (const UnitHeadroom& unit : units) EXPECT_LE(unit.time_ns, frame_ns) << unit_name(unit.unit);
+    EXPECT_LT(units.front().time_ns, frame_ns);
+  }
+}
+
+TEST(Headroom, OfTheOnlyUnitIsTheWholeTimeButTheFixedCost) {
+  GpuConfig gpu = busy_gpu();
+  WorkTrace trace;
+  PassCounters c;
+  c.stats.input_assembly_vertices = 1000;
+  trace.passes = {repeated(PassKind::draw, c, 4)};
+  const std::vector<UnitHeadroom> units = headroom(trace, gpu, Engine::queue);
+  ASSERT_EQ(units.size(), 1u);
+  EXPECT_EQ(units[0].unit, Unit::ia);
+  EXPECT_DOUBLE_EQ(units[0].time_ns, gpu.pass_overhead_us * 1000.0);
 }
 
 }  // namespace

@@ -5,10 +5,11 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
-#include "pipeline/scene/gltf/container.h"
 #include "hwsim/base/content_hash.h"
+#include "pipeline/scene/gltf/container.h"
 #include "pipeline/scene/gltf/rules.h"
 
 namespace hwsim::pipeline::gltf {
@@ -21,6 +22,7 @@ struct Callbacks {
   std::size_t max_file_bytes = 0;
   std::map<std::string, std::size_t> declared_bytes;  ///< of external buffers, by decoded URI
   ContentHash hash;
+  std::set<std::string> files;
   std::vector<std::vector<std::uint8_t>> images;
 };
 
@@ -47,8 +49,9 @@ std::string percent_decoded(const std::string& uri) {
 // tinygltf would also look in the current directory: a scene must not depend on where the program was
 // started.
 bool exists_in_folder(const std::string& path, void* user) {
-  const auto& callbacks = *static_cast<const Callbacks*>(user);
+  auto& callbacks = *static_cast<Callbacks*>(user);
   std::error_code error;
+  callbacks.files.insert(path);
   return path.rfind(callbacks.folder, 0) == 0 && std::filesystem::is_regular_file(path, error);
 }
 
@@ -140,7 +143,9 @@ Source read_source(Report& report, const SceneLoadOptions& options) {
 
   Callbacks callbacks;
   std::error_code error;
-  callbacks.folder = std::filesystem::absolute(report.file(), error).parent_path().string();
+  const std::filesystem::path file = std::filesystem::absolute(report.file(), error);
+  callbacks.folder = file.parent_path().string();
+  callbacks.files.insert(file.string());
   callbacks.max_file_bytes = options.max_file_bytes;
   callbacks.hash.add(container.bytes);
   callbacks.images.resize(root.contains("images") ? root["images"].size() : 0);
@@ -151,6 +156,7 @@ Source read_source(Report& report, const SceneLoadOptions& options) {
   check_buffers_complete(report, root, source.model);
   source.images = std::move(callbacks.images);
   source.content_hash = callbacks.hash.hex();
+  source.files.assign(callbacks.files.begin(), callbacks.files.end());
   return source;
 }
 

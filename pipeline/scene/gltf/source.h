@@ -18,6 +18,7 @@ struct Source {
   tinygltf::Model model;
   std::vector<std::vector<std::uint8_t>> images;  ///< encoded; empty where the file could not be read
   std::string content_hash;
+  std::vector<std::string> files;  ///< that were read, or looked for
 };
 
 /// Everything that is checked without looking at vertices is right in the result: types, references, byte

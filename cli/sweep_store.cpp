@@ -1,0 +1,239 @@
+#include "cli/sweep_store.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cli/messages.h"
+
+namespace hwsim::cli {
+namespace {
+
+constexpr double kNsPerMs = 1e6, kBytesPerMb = 1e6, kBytesPerMib = 1024.0 * 1024.0;
+
+// Raised when a column changes its meaning; columns are only added otherwise.
+constexpr const char* kSchemaVersion = "1";
+
+constexpr const char* kSchema = R"(
+CREATE TABLE IF NOT EXISTS sweep (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS point (
+  id TEXT PRIMARY KEY, number INTEGER NOT NULL, scene TEXT NOT NULL, technique TEXT NOT NULL,
+  gpu TEXT NOT NULL, engine TEXT NOT NULL, width_px INTEGER NOT NULL, height_px INTEGER NOT NULL,
+  settings TEXT NOT NULL, run_file TEXT NOT NULL, gpu_file TEXT NOT NULL,
+  state TEXT NOT NULL, message TEXT NOT NULL DEFAULT '',
+  time_ms REAL, lo_ms REAL, hi_ms REAL, support TEXT, limiter TEXT, dram_mb REAL, memory_mib REAL,
+  shaded_samples INTEGER, from_cache INTEGER) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS pass (
+  point_id TEXT NOT NULL REFERENCES point(id), ordinal INTEGER NOT NULL, name TEXT NOT NULL,
+  kind TEXT NOT NULL, time_ms REAL NOT NULL, limiter TEXT NOT NULL, dram_mb REAL NOT NULL,
+  PRIMARY KEY (point_id, ordinal)) WITHOUT ROWID;
+)";
+
+bool exists(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::exists(path, error);
+}
+
+std::string settings_json(const std::vector<Assignment>& settings) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const Assignment& set : settings) json[set.path] = set.value;
+  return json.dump();
+}
+
+std::int64_t signed_count(std::uint64_t count) { return static_cast<std::int64_t>(count); }
+
+}  // namespace
+
+SweepStore::SweepStore(const std::string& path, bool may_exist)
+    : path_(path), database_([&] {
+        if (!may_exist && exists(path))
+          hwsim::cli::fail("U013", "`" + path + "` exists and is not overwritten", "",
+                           "another --db, --resume to go on with it, or --force to replace it");
+        return Database(path, Database::Mode::create);
+      }()) {
+  database_.execute("PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL; PRAGMA foreign_keys=ON");
+  database_.execute(kSchema);
+  Database::Statement version(database_, "SELECT value FROM sweep WHERE key = 'schema_version'");
+  if (!version.step())
+    remember("schema_version", kSchemaVersion);
+  else if (version.text(0) != kSchemaVersion)
+    hwsim::cli::fail(
+        "U021", "`" + path + "` has version " + version.text(0) + ", this program writes " + kSchemaVersion);
+}
+
+void SweepStore::remember(const std::string& key, const std::string& value) {
+  Database::Statement(database_, "INSERT OR REPLACE INTO sweep VALUES (?, ?)")
+      .bind(1, key)
+      .bind(2, value)
+      .run();
+}
+
+void SweepStore::add(const std::vector<SweepPoint>& points) {
+  Database::Transaction transaction(database_);
+  database_.execute("UPDATE point SET state = 'interrupted' WHERE state = 'running'");
+  Database::Statement insert(database_,
+                             "INSERT INTO point (id, number, scene, technique, gpu, engine, width_px, "
+                             "height_px, settings, run_file, gpu_file, state) VALUES "
+                             "(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 'pending') ON CONFLICT (id) DO UPDATE SET "
+                             "number = excluded.number");
+  for (const SweepPoint& point : points)
+    insert.bind(1, point.id)
+        .bind(2, point.number)
+        .bind(3, point.scene)
+        .bind(4, point.technique)
+        .bind(5, point.gpu)
+        .bind(6, point.engine)
+        .bind(7, std::int64_t{point.resolution.width_px})
+        .bind(8, std::int64_t{point.resolution.height_px})
+        .bind(9, settings_json(point.settings))
+        .bind(10, point.run_file)
+        .bind(11, point.gpu_file)
+        .run();
+  transaction.commit();
+}
+
+std::string SweepStore::state_of(const std::string& id) {
+  Database::Statement select(database_, "SELECT state FROM point WHERE id = ?");
+  select.bind(1, id);
+  return select.step() ? select.text(0) : "";
+}
+
+void SweepStore::set_state(const std::string& id, const std::string& state, const std::string& message) {
+  Database::Statement(database_, "UPDATE point SET state = ?, message = ? WHERE id = ?")
+      .bind(1, state)
+      .bind(2, message)
+      .bind(3, id)
+      .run();
+}
+
+void SweepStore::start(const std::string& id) { set_state(id, "running", ""); }
+void SweepStore::fail(const std::string& id, const std::string& message) { set_state(id, "failed", message); }
+
+void SweepStore::finish(const std::string& id, const PointResult& result) {
+  const FrameTiming& timing = result.timing;
+  const auto dram_mb = [](const StreamBytes& bytes) {
+    return (bytes.total_read() + bytes.total_write()) / kBytesPerMb;
+  };
+  Database::Transaction transaction(database_);
+  Database::Statement update(database_,
+                             "UPDATE point SET state = 'done', message = '', time_ms = ?, lo_ms = ?, hi_ms "
+                             "= ?, support = ?, limiter = ?, dram_mb = ?, memory_mib = ?, shaded_samples = "
+                             "?, from_cache = ? WHERE id = ?");
+  update.bind(1, timing.time_ns / kNsPerMs).bind_null(2).bind_null(3).bind(4, support_name(timing.support));
+  if (timing.interval_ns)
+    update.bind(2, (*timing.interval_ns)[0] / kNsPerMs).bind(3, (*timing.interval_ns)[1] / kNsPerMs);
+  update.bind(5, timing.passes.empty() ? "" : unit_name(slowest_pass(timing).limiter))
+      .bind(6, dram_mb(timing.dram_bytes))
+      .bind(7, static_cast<double>(result.emulation->trace.peak_memory_bytes) / kBytesPerMib)
+      .bind(8, signed_count(shaded_samples(result.emulation->trace)))
+      .bind(9, std::int64_t{result.from_cache})
+      .bind(10, id)
+      .run();
+  Database::Statement(database_, "DELETE FROM pass WHERE point_id = ?").bind(1, id).run();
+  Database::Statement insert(database_, "INSERT INTO pass VALUES (?, ?, ?, ?, ?, ?, ?)");
+  std::int64_t ordinal = 0;
+  for (const PassTiming& pass : timing.passes)
+    insert.bind(1, id)
+        .bind(2, ordinal++)
+        .bind(3, pass.name)
+        .bind(4, pass_kind_name(pass.kind))
+        .bind(5, pass.time_ns / kNsPerMs)
+        .bind(6, unit_name(pass.limiter))
+        .bind(7, dram_mb(pass.dram_bytes))
+        .run();
+  transaction.commit();
+}
+
+std::size_t SweepStore::merge(const std::string& path) {
+  if (!exists(path)) hwsim::cli::fail("U021", "there is no database `" + path + "`");
+  const auto done = [this] { return count("done"); };
+  const std::size_t before = done();
+  { SweepStore checked(path, true); }  // another version, or no sweep at all, ends here
+  Database::Statement(database_, "ATTACH DATABASE ? AS other").bind(1, path).run();
+  {
+    Database::Transaction transaction(database_);
+    database_.execute(
+        "DELETE FROM main.pass WHERE point_id IN (SELECT o.id FROM other.point o JOIN main.point m ON o.id = "
+        "m.id WHERE o.state = 'done' AND m.state <> 'done')");
+    database_.execute(
+        "DELETE FROM main.point WHERE state <> 'done' AND id IN (SELECT id FROM other.point WHERE state = "
+        "'done')");
+    database_.execute("INSERT OR IGNORE INTO main.point SELECT * FROM other.point");
+    database_.execute("INSERT OR IGNORE INTO main.pass SELECT * FROM other.pass");
+    transaction.commit();
+  }
+  database_.execute("DETACH DATABASE other");
+  return done() - before;
+}
+
+std::size_t SweepStore::count(const std::string& state) {
+  Database::Statement select(database_, "SELECT count(*) FROM point WHERE state = ?");
+  select.bind(1, state).step();
+  return static_cast<std::size_t>(select.integer(0));
+}
+
+Table SweepStore::points() {
+  std::vector<std::string> varied;  // over all points, in order of appearance
+  std::set<std::string> known;
+  Database::Statement select(
+      database_,
+      "SELECT number, id, scene, technique, gpu, width_px, height_px, settings, state, time_ms, lo_ms, "
+      "hi_ms, support, limiter, dram_mb, memory_mib, shaded_samples, message FROM point ORDER BY number, id");
+  std::vector<nlohmann::ordered_json> settings;
+  std::vector<std::vector<Cell>> rows;
+  const auto real = [&](int column, int decimals) -> Cell {
+    const auto value = select.real(column);
+    return value ? Cell{Real{*value, decimals}} : Cell{NotApplicable{}};
+  };
+  const auto text = [&](int column) -> Cell {
+    const std::string value = select.text(column);
+    return value.empty() ? Cell{NotApplicable{}} : Cell{value};
+  };
+  while (select.step()) {
+    settings.push_back(nlohmann::ordered_json::parse(select.text(7), nullptr, false));
+    if (settings.back().is_discarded())
+      hwsim::cli::fail("U021", "`" + path_ + "` is damaged: the settings of a point are not JSON");
+    for (const auto& [path, value] : settings.back().items())
+      if (known.insert(path).second) varied.push_back(path);
+    const Cell shaded =
+        select.real(16) ? Cell{static_cast<std::uint64_t>(select.integer(16))} : Cell{NotApplicable{}};
+    rows.push_back({static_cast<std::uint64_t>(select.integer(0)), select.text(1), select.text(2),
+                    select.text(3), select.text(4), static_cast<std::uint64_t>(select.integer(5)),
+                    static_cast<std::uint64_t>(select.integer(6)), select.text(8), real(9, 4), real(10, 4),
+                    real(11, 4), text(12), text(13), real(14, 2), real(15, 1), shaded, text(17)});
+  }
+  constexpr std::ptrdiff_t kSettingsColumn = 7;
+  Table table{{{"number", "#", true},
+               {"point_id", "point"},
+               {"scene", "scene"},
+               {"technique", "technique"},
+               {"gpu", "GPU"},
+               {"width_px", "width", true},
+               {"height_px", "height", true},
+               {"state", "state"},
+               {"time_ms", "ms", true},
+               {"lo_ms", "lo", true},
+               {"hi_ms", "hi", true},
+               {"support", "support"},
+               {"limiter", "limiter"},
+               {"dram_mb", "DRAM MB", true},
+               {"memory_mib", "memory MiB", true},
+               {"shaded_samples", "shaded samples", true},
+               {"message", "message"}},
+              std::move(rows)};
+  for (size_t k = 0; k < varied.size(); ++k) {
+    const auto at = kSettingsColumn + static_cast<std::ptrdiff_t>(k);
+    table.columns.insert(table.columns.begin() + at, {varied[k], varied[k], true});
+    for (size_t i = 0; i < table.rows.size(); ++i) {
+      const auto found = settings[i].find(varied[k]);
+      table.rows[i].insert(table.rows[i].begin() + at, found == settings[i].end()
+                                                           ? Cell{NotApplicable{}}
+                                                           : Cell{found->get<std::string>()});
+    }
+  }
+  return table;
+}
+
+}  // namespace hwsim::cli

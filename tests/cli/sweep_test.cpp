@@ -1,0 +1,146 @@
+// Many points in a database: every one there once, whatever interrupts.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cli/program.h"
+
+namespace hwsim::cli::test {
+namespace {
+
+using nlohmann::json;
+
+class SweepTest : public testing::Test {
+ protected:
+  SweepTest() { place.write("triangle.gltf", kTriangleGltf); }
+  Outcome sweep(const std::string& flags) {
+    return place.hwsim("sweep triangle.gltf --resolution 64x48 " + flags);
+  }
+  json points(const std::string& flags) {
+    const Outcome outcome = sweep("--json " + flags);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out, nullptr, false);
+  }
+  Workplace place;
+};
+
+TEST_F(SweepTest, GridHasEveryCombinationOnceWithTheTimesOfRun) {
+  const json rows = points("-t none,msaa4x -g gtx980 -g gtx470 --vary gpu.core_clock_mhz=500,1000,1500");
+  ASSERT_EQ(rows.size(), 12u);
+  std::set<std::string> ids;
+  for (const json& row : rows) {
+    ids.insert(row["point_id"]);
+    EXPECT_EQ(row["state"], "done");
+  }
+  EXPECT_EQ(ids.size(), 12u);
+  const json& row = rows[6];  // settings vary slowest, then techniques, then GPUs
+  EXPECT_EQ(row["technique"], "msaa4x");
+  EXPECT_EQ(row["gpu"], "gtx980");
+  EXPECT_EQ(row["gpu.core_clock_mhz"], "1000");
+  const Outcome run = place.hwsim(
+      "run triangle.gltf --resolution 64x48 --no-image --json -t msaa4x --set gpu.core_clock_mhz=1000");
+  EXPECT_EQ(json::parse(run.out)["frame"]["time_ms"], row["time_ms"]);
+}
+
+TEST_F(SweepTest, LatinHypercubeUsesEachStratumOnceAndRepeats) {
+  const std::string flags =
+      "--vary gpu.core_clock_mhz=1000..2000 --vary gpu.dram_bandwidth_gb_s=100..1600 --sample lhs:20 ";
+  const json first = points(flags + "--db a.sqlite"), again = points(flags + "--db b.sqlite");
+  EXPECT_EQ(first, again);
+  EXPECT_NE(first, points(flags + "--seed 2 --db c.sqlite"));
+  for (const auto& [key, low, width] :
+       {std::tuple{"gpu.core_clock_mhz", 1000.0, 50.0}, std::tuple{"gpu.dram_bandwidth_gb_s", 100.0, 75.0}}) {
+    std::set<int> strata;
+    for (const json& row : first)
+      strata.insert(static_cast<int>((std::stod(row[key].get<std::string>()) - low) / width));
+    EXPECT_EQ(strata.size(), 20u) << key;
+    EXPECT_EQ(*strata.begin(), 0);
+    EXPECT_EQ(*strata.rbegin(), 19);
+  }
+}
+
+TEST_F(SweepTest, KilledAndResumedItEqualsAnUninterruptedOne) {
+  const std::string flags = "-t none,msaa4x --vary gpu.core_clock_mhz=500..2000:300 --format csv ";
+  const Outcome whole = sweep(flags + "--db whole.sqlite");
+  ASSERT_EQ(whole.status, 0) << whole.err;
+  // Killed without warning, several times, at other places each time.
+  for (const char* delay : {"0.12", "0.25", "0.4"})
+    place.shell("hwsim sweep triangle.gltf --resolution 64x48 " + flags +
+                "--resume --db cut.sqlite >/dev/null 2>&1 & sleep " + delay + "; kill -KILL $!; wait $!");
+  const Outcome resumed = sweep(flags + "--resume --db cut.sqlite");
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_EQ(resumed.out, whole.out);
+  EXPECT_NE(resumed.err.find("600 points done, 0 failed, 0 left"), std::string::npos) << resumed.err;
+}
+
+TEST_F(SweepTest, ShardsMergeToTheWhole) {
+  const std::string flags = "--vary gpu.core_clock_mhz=500..1500:7 --format csv ";
+  const Outcome whole = sweep(flags + "--db whole.sqlite");
+  for (const std::string shard : {"1", "2", "3"})
+    ASSERT_EQ(sweep(flags + "--shard " + shard + "/3 --db part" + shard + ".sqlite").status, 0);
+  const Outcome merged = place.hwsim(
+      "sweep --format csv --db all.sqlite --merge part1.sqlite --merge part2.sqlite --merge part3.sqlite");
+  ASSERT_EQ(merged.status, 0) << merged.err;
+  EXPECT_EQ(merged.out, whole.out);
+}
+
+TEST_F(SweepTest, FailedPointsAreKeptWithTheirReasonAndEndIn5) {
+  const Outcome outcome = sweep("-t none,msaa8x --vary gpu.features.native_msaa_max=4,8 --json");
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  const json rows = json::parse(outcome.out);
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[1]["state"], "failed");
+  EXPECT_NE(rows[1]["message"].get<std::string>().find("native_msaa_max"), std::string::npos) << rows[1];
+  for (const size_t i : {0u, 2u, 3u}) EXPECT_EQ(rows[i]["state"], "done");
+}
+
+TEST_F(SweepTest, DryRunListsPointsAndWritesNothing) {
+  const Outcome outcome = sweep("--vary gpu.core_clock_mhz=1,2,3 --dry-run --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(json::parse(outcome.out).size(), 3u);
+  EXPECT_EQ(place.listing(), "triangle.gltf");
+}
+
+TEST_F(SweepTest, ExistingSweepIsKeptUnlessForcedOrResumed) {
+  ASSERT_EQ(sweep("").status, 0);
+  const Outcome refused = sweep("");
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_NE(refused.err.find("error[U013]"), std::string::npos) << refused.err;
+  EXPECT_EQ(sweep("--resume").status, 0);
+  EXPECT_EQ(points("--force -t none,msaa4x").size(), 2u);
+  EXPECT_EQ(json::parse(place.hwsim("sweep --json").out).size(), 2u);
+}
+
+TEST_F(SweepTest, MistakesEndInMessages) {
+  const auto refused = [&](const std::string& arguments, int status, const std::string& code) {
+    const Outcome outcome = place.hwsim("sweep " + arguments);
+    EXPECT_EQ(outcome.status, status) << arguments;
+    EXPECT_NE(outcome.err.find("error[" + code + "]"), std::string::npos) << arguments << outcome.err;
+    EXPECT_EQ(outcome.err.find("X001"), std::string::npos) << outcome.err;
+  };
+  place.write("thesis.sqlite", std::string(4096, 'x'));
+  refused("", 2, "U002");
+  refused("triangle.gltf --sample lhs:0 --vary gpu.core_clock_mhz=1..2", 2, "U019");
+  refused("triangle.gltf --sample sobol:4 --vary gpu.core_clock_mhz=1..2", 2, "U019");
+  refused("triangle.gltf --shard 4/3", 2, "U003");
+  refused("triangle.gltf --vary gpu.core_clock_mhz=1000,-1", 3, "C014");
+  refused("triangle.gltf --db thesis.sqlite", 3, "U013");
+  refused("triangle.gltf --db thesis.sqlite --resume", 3, "U021");
+  refused("triangle.gltf --db thesis.sqlite --force", 3, "U021");
+  refused("triangle.gltf --db missing/a.sqlite", 3, "U021");
+  refused("--merge missing.sqlite", 3, "U021");
+  EXPECT_EQ(place.read("thesis.sqlite"), std::string(4096, 'x'));
+}
+
+TEST_F(SweepTest, ThousandConfigurationsEmulateOnce) {
+  const auto start = std::chrono::steady_clock::now();
+  const Outcome outcome = sweep("-t msaa4x --vary gpu.core_clock_mhz=500..2000:1000 -q --format csv");
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_LT(seconds, 20.0);  // two on an idle machine
+}
+
+}  // namespace
+}  // namespace hwsim::cli::test
