@@ -4,7 +4,8 @@
 
 #include <array>
 #include <chrono>
-#include <filesystem>
+
+#include "cli/calibration_files.h"
 
 namespace hwsim::cli {
 namespace {
@@ -28,6 +29,7 @@ PointResult Simulator::run(const algos::TechniqueChoice& technique, const GpuCon
   point.timing = time_frame(point.emulation->trace, gpu, plan_.engine);
   point.timing_wall_s = seconds_since(start);
   check_invariants(point.emulation->trace, point.timing, gpu);
+  add_interval(point.timing, point.emulation->trace, gpu, algos::technique_text(technique));
   if (reference_)
     point.image_error = pipeline::compare(point.emulation->color, reference_->image, &point.flip_map);
   return point;
