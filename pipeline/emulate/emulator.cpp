@@ -54,6 +54,7 @@ class FrameRunner {
       result.pass_wall_s.push_back(
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
       result.trace.passes.push_back(std::move(work));
+      if (options_.inspect) inspect(pass);
       release(static_cast<int>(position));
     }
     if (options_.progress) options_.progress(1.0, "");
@@ -69,6 +70,12 @@ class FrameRunner {
   }
 
  private:
+  void inspect(const Pass& pass) const {
+    std::vector<const GpuImage*> images;
+    for (const std::unique_ptr<GpuImage>& i : images_) images.push_back(i.get());
+    options_.inspect(pass, images);
+  }
+
   GpuImage& image(ImageId id) { return *images_[static_cast<std::size_t>(id.index)]; }
 
   void allocate(int position) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -40,11 +41,15 @@ inline constexpr std::array<SkipInfo, 4> kSkips = {{
      &SkipSwitches::single_color_pixels},
 }};
 
+struct GpuImage;  // emulate/gpu_image.h
+
 struct EmulationOptions {
   int jobs = 1;
   SkipSwitches skip;
   bool exact_reuse = false;  ///< reuse distances of all blocks, not of a sample: slow, to know the error
   std::function<void(double done_ratio, const std::string& pass)> progress;  ///< optional
+  /// Optional: a look at memory after each pass. Images by ImageId; null while not alive.
+  std::function<void(const Pass& pass, std::span<const GpuImage* const> images)> inspect;
 };
 
 struct Emulation {
