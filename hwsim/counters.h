@@ -117,13 +117,24 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(fetched_128bit_texels, "texels read unfiltered, 128 bit")                                  \
   X(texels, "texels read, by the filter and unfiltered")
 
-#define HWSIM_CROP_COUNTERS(X)                                                             \
-  X(exported_fragments, "fragments written to color targets, times the number of targets") \
-  X(written_samples, "color samples written, all targets")                                 \
-  X(blended_samples, "of these, that read the target and blended")                         \
-  X(single_color_fragments, "exported fragments that covered every sample of their pixel") \
-  X(touched_tiles, "8x8 color tiles used, all targets, once for each chunk of work")       \
-  X(first_touched_tiles, "8x8 color tiles used for the first time in the pass, all targets")
+#define HWSIM_CROP_COUNTERS(X)                                                                    \
+  X(exported_fragments, "fragments written to color targets, times the number of targets")        \
+  X(written_samples, "color samples written, all targets")                                        \
+  X(blended_samples, "of these, that read the target and blended")                                \
+  X(single_color_fragments, "exported fragments that covered every sample of their pixel")        \
+  X(touched_tiles, "8x8 color tiles used, all targets, once for each chunk of work")              \
+  X(first_touched_tiles, "8x8 color tiles used for the first time in the pass, all targets")      \
+  X(read_single_pixels,                                                                           \
+    "pixels of multisampled tiles that memory gave to blending and resolves that held one color") \
+  X(read_double_pixels, "that held two")                                                          \
+  X(read_mixed_pixels, "that held more, or colors that are not tracked")                          \
+  X(read_single_groups_8px, "4x2 pixel groups of them with one color in each pixel")              \
+  X(read_single_groups_16px, "4x4 pixel groups of them with one color in each pixel")             \
+  X(write_single_pixels, "pixels of multisampled tiles given back to memory that held one color") \
+  X(write_double_pixels, "that held two")                                                         \
+  X(write_mixed_pixels, "that held more, or colors that are not tracked")                         \
+  X(write_single_groups_8px, "4x2 pixel groups of them with one color in each pixel")             \
+  X(write_single_groups_16px, "4x4 pixel groups of them with one color in each pixel")
 
 #define HWSIM_RESOLVE_COUNTERS(X)             \
   X(read_samples, "samples read by resolves") \
@@ -149,21 +160,21 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(slot_conflicts_fragments, "SBAA: fragments that replaced another one's record in a slot")      \
   X(agaa_aggregates, "AGAA: aggregates that the clustering of pixels' samples made")               \
   X(agaa_plane_split_pixels, "AGAA: pixels in which it made several aggregates of one plane")      \
-  X(agaa_mixed_code_fragments, "AGAA: fragments whose samples belong to several aggregates") \
-  X(sss_tested_primitives, "critical triangles that selective supersampling tested in this view") \
-  X(sss_uncritical_primitives, "of these, out of view or not critical in it")                     \
-  X(sss_early_exit_primitives, "of these, too far from a highlight")                              \
-  X(sss_processed_primitives, "of these, sampled further")                                        \
-  X(sss_point_samples, "points placed on them")                                                   \
-  X(sss_shaded_samples, "lighting evaluations of the further samples")                            \
-  X(sss_stored_fragments, "fragments stored in per-pixel lists")                                  \
-  X(sss_dropped_fragments, "fragments that found the lists' memory full: the image lacks them")   \
-  X(sss_truncated_pixels, "pixels whose list was longer than the resolve reads")                  \
-  X(sss_list_1_pixels, "pixels with one fragment in their list")                                  \
-  X(sss_list_2_to_3_pixels, "pixels with 2 or 3")                                                 \
-  X(sss_list_4_to_7_pixels, "pixels with 4 to 7")                                                 \
-  X(sss_list_8_to_15_pixels, "pixels with 8 to 15")                                               \
-  X(sss_list_16_to_31_pixels, "pixels with 16 to 31")                                             \
+  X(agaa_mixed_code_fragments, "AGAA: fragments whose samples belong to several aggregates")       \
+  X(sss_tested_primitives, "critical triangles that selective supersampling tested in this view")  \
+  X(sss_uncritical_primitives, "of these, out of view or not critical in it")                      \
+  X(sss_early_exit_primitives, "of these, too far from a highlight")                               \
+  X(sss_processed_primitives, "of these, sampled further")                                         \
+  X(sss_point_samples, "points placed on them")                                                    \
+  X(sss_shaded_samples, "lighting evaluations of the further samples")                             \
+  X(sss_stored_fragments, "fragments stored in per-pixel lists")                                   \
+  X(sss_dropped_fragments, "fragments that found the lists' memory full: the image lacks them")    \
+  X(sss_truncated_pixels, "pixels whose list was longer than the resolve reads")                   \
+  X(sss_list_1_pixels, "pixels with one fragment in their list")                                   \
+  X(sss_list_2_to_3_pixels, "pixels with 2 or 3")                                                  \
+  X(sss_list_4_to_7_pixels, "pixels with 4 to 7")                                                  \
+  X(sss_list_8_to_15_pixels, "pixels with 8 to 15")                                                \
+  X(sss_list_16_to_31_pixels, "pixels with 16 to 31")                                              \
   X(sss_list_from_32_pixels, "pixels with 32 or more")
 
 /// Bytes that units asked for, by stream; what of it DRAM moves is the timing engines' business.

@@ -41,9 +41,9 @@ class BitReader {
 
 struct PackedPlane {
   float base, ddx, ddy;
-  std::int16_t reference_x, reference_y;
+  float reference_x, reference_y;
 };
-static_assert(sizeof(PackedPlane) == 16);
+static_assert(sizeof(PackedPlane) == 20);
 
 int index_bits(DepthTileForm form) {
   return form == DepthTileForm::one_plane ? 0 : form == DepthTileForm::two_planes ? 1 : 2;
@@ -51,9 +51,6 @@ int index_bits(DepthTileForm form) {
 int plane_slots(DepthTileForm form) { return 1 << index_bits(form); }
 int offset_bits(DepthTileForm form) { return form == DepthTileForm::offset_6 ? 6 : 14; }
 int raw_bits(Format format) { return format == Format::d16_unorm ? 16 : 32; }
-
-int tile_x(const GpuImage& image, int block) { return block % image.blocks_x * kBlockPx; }
-int tile_y(const GpuImage& image, int block) { return block / image.blocks_x * kBlockPx; }
 
 // The slots of a form that holds more planes than the tile has stay zero.
 void pack_planes(const GpuImage& image, int block, PackedDepthTile& out) {
@@ -63,9 +60,10 @@ void pack_planes(const GpuImage& image, int block, PackedDepthTile& out) {
       image.plane_lanes.data() + static_cast<std::ptrdiff_t>(block * kMaxDepthPlanes * image.samples);
   out.bytes.resize(sizeof(PackedPlane) * static_cast<std::size_t>(plane_slots(out.form)));
   for (int p = 0; p < count; ++p) {
-    const PackedPlane packed{planes[p].z.base, planes[p].z.ddx, planes[p].z.ddy,
-                             static_cast<std::int16_t>(planes[p].reference_x - tile_x(image, block)),
-                             static_cast<std::int16_t>(planes[p].reference_y - tile_y(image, block))};
+    const DepthPlane& plane = planes[p];
+    const PackedPlane packed{plane.z.base, plane.z.ddx, plane.z.ddy,
+                             plane.reference_x - static_cast<float>(image.block_x(block)),
+                             plane.reference_y - static_cast<float>(image.block_y(block))};
     std::memcpy(out.bytes.data() + sizeof(packed) * static_cast<std::size_t>(p), &packed, sizeof(packed));
   }
   BitWriter writer(out.bytes);
@@ -114,12 +112,11 @@ void unpack_planes(const GpuImage& image, const PackedDepthTile& tile, std::span
     const PackedPlane& p = planes[reader.get(index_bits(tile.form))];
     const SamplePosition position = image.plane_positions[i / kBlockLanes];
     const int lane = static_cast<int>(i % kBlockLanes);
-    values[i] = value_at({p.base, p.ddx, p.ddy},
-                         static_cast<float>(lane_x(lane) - p.reference_x) + 0.5f +
-                             static_cast<float>(position.x) * 0.0625f,
-                         static_cast<float>(lane_y(lane) - p.reference_y) + 0.5f +
-                             static_cast<float>(position.y) * 0.0625f,
-                         scale);
+    values[i] = value_at(
+        {p.base, p.ddx, p.ddy},
+        (static_cast<float>(lane_x(lane)) - p.reference_x) + 0.5f + static_cast<float>(position.x) * 0.0625f,
+        (static_cast<float>(lane_y(lane)) - p.reference_y) + 0.5f + static_cast<float>(position.y) * 0.0625f,
+        scale);
   }
 }
 
@@ -157,7 +154,8 @@ void unpack_depth_tile(const GpuImage& image, int block, const PackedDepthTile& 
                        std::span<std::uint32_t> values) {
   const bool planes = tile.form == DepthTileForm::one_plane || tile.form == DepthTileForm::two_planes ||
                       tile.form == DepthTileForm::four_planes;
-  if (tile.form == DepthTileForm::clear) std::ranges::fill(values, image.clear_words[0]);
+  if (tile.form == DepthTileForm::clear)
+    std::ranges::fill(values, image.clear_words[0]);
   else if (planes)
     unpack_planes(image, tile, values);
   else

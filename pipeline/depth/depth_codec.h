@@ -16,10 +16,10 @@ struct PackedDepthTile {
 };
 
 /// Packs a tile in the form that depth_tile_form gives, `clear` for a tile that is still marked as cleared.
-/// Layouts, little-endian: planes: 16 bytes each (base, ddx, ddy, reference pixel relative to the tile as two
-/// 16-bit integers), then the number of the plane of each sample in 0, 1 or 2 bits; offsets: nearest, farthest
-/// value of the tile, then for each sample one bit (0: from the nearest) and 6 or 14 bits of distance; raw: 2
-/// bytes a sample for D16, else 4.
+/// Layouts, little-endian: planes: 20 bytes each (base, ddx, ddy, reference point relative to the tile), then
+/// the number of the plane of each sample in 0, 1 or 2 bits; offsets: nearest, farthest value of the tile,
+/// then for each sample one bit (0: from the nearest) and 6 or 14 bits of distance; raw: 2 bytes a sample for
+/// D16, else 4.
 PackedDepthTile pack_depth_tile(const GpuImage& image, int block);
 
 /// The samples of the tile: `samples` * 64 values, sample by sample. Lanes outside of the image are clear.

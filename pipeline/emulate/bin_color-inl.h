@@ -1,5 +1,6 @@
 // Color writes of a screen bin. Per-target include guard.
 #include "pipeline/emulate/bin_depth-inl.h"
+#include "pipeline/emulate/color_traffic.h"
 #include "pipeline/emulate/color_write-inl.h"
 
 #if defined(HWSIM_EMULATE_BIN_COLOR_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -23,45 +24,78 @@ class BinColor : protected BinDepth {
       const BlendState state = target < w_.state->blend.size() ? w_.state->blend[target] : BlendState{};
       if (state.write_mask == 0) continue;
       GpuImage& image = *c_.color[target];
-      image.use(block);
-      EncodedBatch texels;
       const bool reads = state.enabled || state.write_mask != 0xf;
-      if (!reads) encode_batch(image.format, batch.color[target], image.words, batch.valid_lanes, texels);
-      std::uint64_t written = 0, any_lane = 0, every_sample = ~std::uint64_t{0};
       const ColorSamples samples(samples_ / image.samples, first_sample, last_sample);
+      std::uint64_t combined[kMaxSamples] = {};
+      for (int s = samples.begin; s < samples.end; ++s)
+        combined[s] = samples.combine(s, [&](int i) HWY_ATTR { return masks[i]; });
+      const TileWrite write = describe(image, combined, samples, reads);
+      if (write.any == 0) continue;
+      const std::uint64_t lazy = begin_write(target, block, combined, write);
+      EncodedBatch texels;
+      if (!reads) encode_batch(image.format, batch.color[target], image.words, batch.valid_lanes, texels);
       for (int s = samples.begin; s < samples.end; ++s) {
-        const std::uint64_t mask = samples.combine(s, [&](int i) HWY_ATTR { return masks[i]; });
-        any_lane |= mask;
-        every_sample &= mask;
-        written += popcount(mask);
+        const std::uint64_t mask = s == 0 ? combined[0] : combined[s] & ~lazy;
         if (mask == 0) continue;
         if (reads) blend_tile(image, state, batch.color[target], block, s, texels);
         store_tile(image, block, s, mask, texels);
       }
-      if (any_lane == 0) continue;
-      const bool all_samples = samples.end - samples.begin == image.samples;
-      count_color(target, block, popcount(any_lane), all_samples ? popcount(every_sample) : 0, written,
-                  reads);
     }
   }
 
-  void count_color(std::size_t target, int block, std::uint64_t fragments, std::uint64_t single_color,
-                   std::uint64_t written, bool reads) {
+  static TileWrite describe(const GpuImage& image, const std::uint64_t* combined, const ColorSamples& samples,
+                            bool reads) {
+    TileWrite write;
+    write.blends = reads;
+    std::uint64_t every = ~std::uint64_t{0};
+    for (int s = samples.begin; s < samples.end; ++s) {
+      write.any |= combined[s];
+      every &= combined[s];
+      write.count += popcount(combined[s]);
+    }
+    if (samples.end - samples.begin == image.samples) write.whole = every;
+    return write;
+  }
+
+  /// Before texels of the tile are written: counts, and says which lanes need only sample 0.
+  std::uint64_t begin_write(std::size_t target, int block, const std::uint64_t* combined,
+                            const TileWrite& write) {
+    GpuImage& image = *c_.color[target];
+    count_color(target, block, write);
+    if (!image.tracks_colors()) {
+      image.use(block);
+      return 0;
+    }
+    if (c_.skip.single_color_pixels)
+      image.use_first_sample(block);
+    else
+      image.use(block);
+    return follow_colors(image, block, combined, write, c_.skip.single_color_pixels);
+  }
+
+  void count_color(std::size_t target, int block, const TileWrite& write) {
     GpuImage& image = *c_.color[target];
     PassCounters& n = w_.counters();
+    const auto i = static_cast<std::size_t>(block);
+    if (image.touched_chunk[i] != w_.current_chunk + 1) {
+      save_color_tile(image, block, w_.chunks);
+      if (write.blends && image.tracks_colors()) count_pixel_colors(kReadPixels, image, block, n.crop);
+    }
     touch_tile(image, block, w_.current_chunk, n.crop);
+    image.unsaved[i] = 1;
     const auto bytes = static_cast<std::uint64_t>(info(image.format).bytes);
-    n.crop.exported_fragments += fragments;
-    n.crop.single_color_fragments += single_color;
-    n.crop.written_samples += written;
-    n.mem.color_write_bytes += written * bytes;
-    if (reads) {
-      n.crop.blended_samples += written;
-      n.mem.color_read_bytes += written * bytes;
+    n.crop.exported_fragments += popcount(write.any);
+    n.crop.single_color_fragments += popcount(write.whole);
+    n.crop.written_samples += write.count;
+    n.mem.color_write_bytes += write.count * bytes;
+    if (write.blends) {
+      n.crop.blended_samples += write.count;
+      n.mem.color_read_bytes += write.count * bytes;
     }
     const auto tile =
         static_cast<std::uint32_t>(target * image.touched_chunk.size()) + static_cast<std::uint32_t>(block);
-    w_.tracker.touch_if_sampled(ReuseStream::color, tile, reads ? written * bytes : 0, written * bytes);
+    w_.tracker.touch_if_sampled(ReuseStream::color, tile, write.blends ? write.count * bytes : 0,
+                                write.count * bytes);
   }
 
   void write_color(const FragmentBatch& batch, const std::int32_t* block, const std::int32_t* quad_in_block,
@@ -71,17 +105,61 @@ class BinColor : protected BinDepth {
       const BlendState state = target < w_.state->blend.size() ? w_.state->blend[target] : BlendState{};
       if (state.write_mask == 0) continue;
       GpuImage& image = *c_.color[target];
-      for (int q = 0; q < to.count; ++q) image.use(block[q]);
-      EncodedBatch texels;
-      const bool reads = state.enabled || state.write_mask != 0xf;
-      if (!reads) encode_batch(image.format, batch.color[target], image.words, batch.valid_lanes, texels);
       const ColorSamples samples(samples_ / image.samples, first_sample, last_sample);
-      for (int s = samples.begin; s < samples.end; ++s) {
-        if (reads) blend_batch(image, state, batch.color[target], to, s, texels);
-        write_sample(image, to, batch.sample_index >= 0, samples, s, texels);
-      }
-      count_quads(target, to, batch.sample_index >= 0, samples, reads);
+      if (state.enabled || state.write_mask != 0xf)
+        blend_quads(batch, state, target, to, samples);
+      else
+        store_quads(batch, target, to, samples);
     }
+  }
+
+  /// Two quads of an opaque batch may lie on the same pixels: one after the other.
+  void store_quads(const FragmentBatch& batch, std::size_t target, const WriteTargets& to,
+                   const ColorSamples& samples) {
+    GpuImage& image = *c_.color[target];
+    EncodedBatch texels;
+    encode_batch(image.format, batch.color[target], image.words, batch.valid_lanes, texels);
+    for (int q = 0; q < to.count; ++q) {
+      const std::uint8_t lazy = begin_quad(target, to, q, batch.sample_index >= 0, samples, false);
+      for (int s = samples.begin; s < samples.end; ++s)
+        store_sample(image, to, q, s, sample_mask(q, batch.sample_index >= 0, samples, s), lazy, texels);
+    }
+  }
+
+  /// The quads of a blending batch lie on different pixels: all of them, a sample at a time.
+  void blend_quads(const FragmentBatch& batch, const BlendState& state, std::size_t target,
+                   const WriteTargets& to, const ColorSamples& samples) {
+    GpuImage& image = *c_.color[target];
+    std::uint8_t lazy[kBatchQuads];
+    for (int q = 0; q < to.count; ++q)
+      lazy[q] = begin_quad(target, to, q, batch.sample_index >= 0, samples, true);
+    EncodedBatch texels;
+    for (int s = samples.begin; s < samples.end; ++s) {
+      blend_batch(image, state, batch.color[target], to, s, texels);
+      for (int q = 0; q < to.count; ++q)
+        store_sample(image, to, q, s, sample_mask(q, batch.sample_index >= 0, samples, s), lazy[q], texels);
+    }
+  }
+
+  /// begin_write for a quad: its lanes of its tile.
+  std::uint8_t begin_quad(std::size_t target, const WriteTargets& to, int q, bool of_sample_batch,
+                          const ColorSamples& samples, bool reads) {
+    const int shift = 4 * to.quad_in_block[q];
+    std::uint64_t combined[kMaxSamples] = {};
+    for (int s = samples.begin; s < samples.end; ++s)
+      combined[s] = std::uint64_t{sample_mask(q, of_sample_batch, samples, s)} << shift;
+    const TileWrite write = describe(*c_.color[target], combined, samples, reads);
+    if (write.any == 0) return 0;
+    return static_cast<std::uint8_t>(begin_write(target, to.block[q], combined, write) >> shift & 15);
+  }
+
+  static void store_sample(GpuImage& image, const WriteTargets& to, int q, int s, std::uint8_t mask,
+                           std::uint8_t lazy, const EncodedBatch& texels) {
+    if (s != 0) mask = static_cast<std::uint8_t>(mask & ~lazy);
+    if (mask == 0) return;
+    for (int word = 0; word < image.words; ++word)
+      store_quad(texels.words[word] + 4 * q, mask,
+                 quad_texels(image, to.block[q], to.quad_in_block[q], s, word));
   }
 
   std::uint8_t sample_mask(int quad, bool of_sample_batch, const ColorSamples& samples, int s) const {
@@ -90,34 +168,6 @@ class BinColor : protected BinDepth {
         w_.samples[of_sample_batch ? static_cast<std::size_t>(w_.sample_quad[q]) : q];
     return static_cast<std::uint8_t>(
         samples.combine(s, [&](int i) HWY_ATTR { return quad_samples.masks[i]; }));
-  }
-
-  void write_sample(GpuImage& image, const WriteTargets& to, bool of_sample_batch,
-                    const ColorSamples& samples, int s, const EncodedBatch& texels) {
-    for (int q = 0; q < to.count; ++q) {
-      const std::uint8_t mask = sample_mask(q, of_sample_batch, samples, s);
-      if (mask == 0) continue;
-      for (int word = 0; word < image.words; ++word)
-        store_quad(texels.words[word] + 4 * q, mask,
-                   quad_texels(image, to.block[q], to.quad_in_block[q], s, word));
-    }
-  }
-
-  void count_quads(std::size_t target, const WriteTargets& to, bool of_sample_batch,
-                   const ColorSamples& samples, bool reads) {
-    for (int q = 0; q < to.count; ++q) {
-      std::uint64_t written = 0;
-      std::uint8_t lanes = 0, all = 15;
-      for (int s = samples.begin; s < samples.end; ++s) {
-        const std::uint8_t mask = sample_mask(q, of_sample_batch, samples, s);
-        written += popcount(mask);
-        lanes |= mask;
-        all &= mask;
-      }
-      if (lanes == 0) continue;
-      const bool all_samples = samples.end - samples.begin == c_.color[target]->samples;
-      count_color(target, to.block[q], popcount(lanes), all_samples ? popcount(all) : 0, written, reads);
-    }
   }
 };
 

@@ -126,6 +126,64 @@ inline void store_tile(GpuImage& image, int block, int sample, std::uint64_t mas
   }
 }
 
+/// Copies sample 0 of `lanes` to the other samples.
+inline void spread_lanes(GpuImage& image, int block, std::uint64_t lanes) {
+  auto* texels = reinterpret_cast<std::int32_t*>(image.block(block));
+  for (int first = 0; first < kBlockLanes; first += kVectorLanes) {
+    if ((lanes >> first & kRegisterBits) == 0) continue;
+    const auto mask = hn::RebindMask(DI(), mask_from_bits(lanes, first).v);
+    for (int w = 0; w < image.words; ++w) {
+      const LaneI color = load(texels + w * kBlockLanes + first);
+      for (int s = 1; s < image.samples; ++s)
+        hn::BlendedStore(color.v, mask, DI(), texels + (s * image.words + w) * kBlockLanes + first);
+    }
+  }
+}
+
+/// A write to a tile of a multisampled image, lane by lane.
+struct TileWrite {
+  std::uint64_t any = 0;    ///< lanes written at some sample
+  std::uint64_t whole = 0;  ///< of these, at all samples
+  std::uint64_t count = 0;  ///< samples
+  bool blends = false;      ///< the result depends on what the target holds
+};
+
+/// Follows which pixels of the tile hold one color or two, from the masks of each color sample. Returns the
+/// lanes of which only sample 0 needs to be written.
+inline std::uint64_t follow_colors(GpuImage& image, int block, const std::uint64_t* masks,
+                                   const TileWrite& write, bool skip_single_colors) {
+  const auto i = static_cast<std::size_t>(block);
+  std::uint64_t &single = image.single_lanes[i], &twice = image.double_lanes[i],
+                &stale = image.stale_lanes[i];
+  const std::uint64_t partial = write.any & ~write.whole;
+  if ((stale & partial) != 0) {
+    spread_lanes(image, block, stale & partial);
+    stale &= ~partial;
+  }
+  if (partial != 0) {
+    std::uint64_t* second = image.tile_second_color(block);
+    std::uint64_t covers_first = ~std::uint64_t{0}, covers_second = covers_first;
+    for (int s = 0; s < image.samples; ++s) {
+      covers_first &= second[s] | masks[s];
+      covers_second &= ~second[s] | masks[s];
+    }
+    // A blended color is another one at each of the two.
+    const std::uint64_t replaces = write.blends ? 0 : covers_first | covers_second;
+    const std::uint64_t two = partial & (single | (twice & replaces));
+    for (int s = 0; s < image.samples; ++s) second[s] = (second[s] & ~two) | (masks[s] & two);
+    single &= ~partial;
+    twice = (twice & ~partial) | two;
+  }
+  if (!write.blends) {
+    single |= write.whole;
+    twice &= ~write.whole;
+  }
+  if (!skip_single_colors) return 0;
+  const std::uint64_t lazy = write.whole & single;
+  stale |= lazy;
+  return lazy;
+}
+
 /// The target's texels at sample s under the batch's quads.
 inline void gather_target(GpuImage& image, const WriteTargets& to, int sample, EncodedBatch& out) {
   const D4I d;

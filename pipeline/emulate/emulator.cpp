@@ -7,6 +7,7 @@
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/depth/depth_format.h"
+#include "pipeline/emulate/color_traffic.h"
 #include "pipeline/emulate/depth_traffic.h"
 #include "pipeline/emulate/geometry.h"
 #include "pipeline/emulate/material_views.h"
@@ -191,6 +192,7 @@ class FrameRunner {
     }
     for (std::size_t i = 0; i < pass.targets.size() && i < resources.targets.size(); ++i) {
       image(pass.targets[i]).use_all(options_.jobs);
+      image(pass.targets[i]).forget_colors();
       resources.targets[i] = &image(pass.targets[i]);
       resources.target_formats[i] = pass.target_view_of(graph_, i);
     }
@@ -300,9 +302,15 @@ class FrameRunner {
       save_depth_tile(depth, block, workers_.front().chunks);
   }
 
+  void save_color(GpuImage& color) {
+    for (int block = 0; block < static_cast<int>(color.unsaved.size()); ++block)
+      save_color_tile(color, block, workers_.front().chunks);
+  }
+
   // Integer sums: the same whichever worker counted.
   void finish_workers(const Pass& pass, PassWork& work) {
     if (pass.depth) save_depth(image(pass.depth));
+    for (const ImageId id : pass.color) save_color(image(id));
     work.chunks.assign(workers_.front().chunks.size(), PassCounters{});
     for (const BinWorker& worker : workers_)
       for (std::size_t i = 0; i < work.chunks.size(); ++i) work.chunks[i] += worker.chunks[i];
@@ -487,11 +495,12 @@ class FrameRunner {
     std::vector<GpuImage*> targets;
     for (const ImageId id : pass.targets) targets.push_back(&image(id));
     GpuImage* source = pass.source ? &image(pass.source) : nullptr;
-    if (source != nullptr) source->use_all(options_.jobs);
+    if (source != nullptr && pass.kind == PassKind::copy) source->use_all(options_.jobs);
     for (GpuImage* target : targets) {
       if (pass.kind == PassKind::clear) clear_image(*target, pass);
       if (pass.kind == PassKind::copy) copy_image(*source, *target);
-      if (pass.kind == PassKind::resolve) resolve_image(*source, *target, options_.jobs);
+      if (pass.kind == PassKind::resolve)
+        skipped_pixels_ += resolve_image(*source, *target, options_.skip.single_color_pixels, options_.jobs);
     }
     if (source != nullptr) work.raster_samples = source->samples;
     work.chunks = count_transfer(pass, source, targets);

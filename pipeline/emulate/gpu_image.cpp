@@ -29,8 +29,13 @@ GpuImage::GpuImage(Format f, int w, int h, int s, int array_layers)
     planes.resize(blocks * kMaxDepthPlanes);
     plane_lanes.resize(blocks * static_cast<std::size_t>(kMaxDepthPlanes * s));
     stored_form.resize(blocks, DepthTileForm::raw);
-    unsaved.resize(blocks);
+  } else if (samples > 1) {
+    single_lanes.resize(blocks);
+    double_lanes.resize(blocks);
+    second_color.resize(blocks * static_cast<std::size_t>(s));
+    stale_lanes.resize(blocks);
   }
+  unsaved.resize(blocks);
   if (format_info.has_stencil) stencil.resize(blocks * static_cast<std::size_t>(s * kBlockLanes));
 }
 
@@ -40,6 +45,21 @@ void GpuImage::fill(int block_index) {
   for (int plane = 0; plane < samples * words; ++plane)
     std::fill_n(to + plane * kBlockLanes, kBlockLanes, clear_words[static_cast<std::size_t>(plane % words)]);
   if (!stencil.empty()) std::fill_n(stencil_block(block_index), samples * kBlockLanes, clear_stencil);
+}
+
+void GpuImage::fill_first_sample(int block_index) {
+  if (!tracks_colors()) return fill(block_index);
+  const auto i = static_cast<std::size_t>(block_index);
+  cleared[i] = 0;
+  stale_lanes[i] = ~std::uint64_t{0};
+  for (int word = 0; word < words; ++word)
+    std::fill_n(block(block_index) + word * kBlockLanes, kBlockLanes,
+                clear_words[static_cast<std::size_t>(word)]);
+}
+
+void GpuImage::forget_colors() {
+  std::fill(single_lanes.begin(), single_lanes.end(), 0);
+  std::fill(double_lanes.begin(), double_lanes.end(), 0);
 }
 
 void GpuImage::start_planes(int block_index) {

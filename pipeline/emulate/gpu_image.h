@@ -25,6 +25,8 @@ constexpr int lane_y(int lane) { return ((lane >> 1) & 1) | ((lane >> 2) & 2) | 
 struct GpuImage;
 /// Writes the planes of a tile into its texels (depth/depth_expand.cpp).
 void expand_depth_tile(GpuImage& image, int block_index);
+/// Copies sample 0 of the stale lanes of a color tile to the others (emulate/transfer.cpp).
+void spread_stale_samples(GpuImage& image, int block_index);
 
 /// Texels are stored tile by tile; in a tile layer by layer; in a layer sample by sample; in a sample, for
 /// each 32-bit word of a texel, the 64 lanes. Formats below 32 bits take a word each here; what the simulated
@@ -43,13 +45,20 @@ struct GpuImage {
   std::vector<std::uint32_t>
       touched_chunk;  ///< of each tile: 1 + the last chunk of the current pass that used it
 
+  // Multisampled color: what compression would see, and what the emulator need not store (techniques 9.4).
+  std::vector<std::uint64_t> single_lanes;  ///< of each tile: pixels with one color at all samples
+  std::vector<std::uint64_t> double_lanes;  ///< pixels with two colors
+  std::vector<std::uint64_t> second_color;  ///< of each sample: pixels of double_lanes that hold the second
+  std::vector<std::uint64_t> stale_lanes;   ///< single pixels of which only sample 0 has been written
+
   // Depth formats: tiles held as planes; their texels are stale.
   std::vector<std::uint8_t> plane_count;        ///< of each tile; 0: the texels hold the depth
   std::vector<DepthPlane> planes;               ///< kMaxDepthPlanes a tile
   std::vector<std::uint64_t> plane_lanes;       ///< lanes of each sample of each of these planes
   std::vector<SamplePosition> plane_positions;  ///< where samples lay when the planes were written
   std::vector<DepthTileForm> stored_form;       ///< of each tile, as last given back to memory
-  std::vector<std::uint8_t> unsaved;            ///< of each tile: 1 when written since
+
+  std::vector<std::uint8_t> unsaved;  ///< of each tile: 1 when written since it was last given back to memory
 
   /// A clear only marks its tiles, as hardware's fast clear does; a tile is filled when it is first used.
   std::vector<std::uint8_t> cleared;  ///< of each tile: 1 while its texels are still to be filled
@@ -65,7 +74,13 @@ struct GpuImage {
     const auto i = static_cast<std::size_t>(block_index);
     if (cleared[i] != 0) fill(block_index);
     if (!plane_count.empty() && plane_count[i] != 0) expand_depth_tile(*this, block_index);
+    if (!stale_lanes.empty() && stale_lanes[i] != 0) spread_stale_samples(*this, block_index);
   }
+  /// Before sample 0 of a color tile is used; other samples of its stale lanes may be garbage.
+  void use_first_sample(int block_index) {
+    if (cleared[static_cast<std::size_t>(block_index)] != 0) fill_first_sample(block_index);
+  }
+  void fill_first_sample(int block_index);
   /// Before a tile's stencil is used, or its depth where planes will do.
   void use_planes(int block_index) {
     if (cleared[static_cast<std::size_t>(block_index)] != 0) start_planes(block_index);
@@ -89,6 +104,13 @@ struct GpuImage {
   std::uint8_t* stencil_block(int block_index) {
     return stencil.data() +
            static_cast<std::size_t>(block_index) * static_cast<std::size_t>(samples * kBlockLanes);
+  }
+  /// Whether pixels of one color are tracked.
+  bool tracks_colors() const { return !single_lanes.empty(); }
+  /// What shaders or copies wrote is not tracked: any sample may differ from any other.
+  void forget_colors();
+  std::uint64_t* tile_second_color(int block_index) {
+    return second_color.data() + static_cast<std::size_t>(block_index * samples);
   }
   DepthPlane* tile_planes(int block_index) {
     return planes.data() + static_cast<std::size_t>(block_index) * kMaxDepthPlanes;

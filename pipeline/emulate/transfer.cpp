@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/depth/depth_format.h"
+#include "pipeline/emulate/color_traffic.h"
 #include "pipeline/shade/texture_view.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pipeline/emulate/transfer.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include "pipeline/emulate/color_write-inl.h"
 #include "pipeline/shade/codec-inl.h"
 #include "pipeline/shade/lanes-inl.h"
 #include "pipeline/shade/scalar_lane-inl.h"
@@ -18,27 +21,50 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
-void resolve_block(const GpuImage& from, GpuImage& to, int block) {
+void spread(GpuImage& image, int block) {
+  const auto i = static_cast<std::size_t>(block);
+  spread_lanes(image, block, image.stale_lanes[i]);
+  image.stale_lanes[i] = 0;
+}
+
+/// The sum over the samples of one register of pixels, in pairs: a power of two of equal values sums without
+/// rounding, so that pixels of one color give that color whether their samples are read or not.
+HWY_INLINE Vec4<LaneF> sum_samples(const GpuImage& from, const std::int32_t* source, int first) {
+  Vec4<LaneF> partial[6] = {};
+  const float* srgb = srgb_decode_table().data();
+  int level = 0;
+  for (int s = 0; s < from.samples; ++s) {
+    LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
+    for (int w = 0; w < from.words; ++w) words[w] = load(source + (s * from.words + w) * kBlockLanes + first);
+    Vec4<LaneF> sum = decode_texel<LaneF, LaneI>(from.format, words, srgb);
+    for (level = 0; (s >> level & 1) != 0; ++level) sum = partial[level] + sum;
+    partial[level] = sum;
+  }
+  return partial[level];
+}
+
+void resolve_block(const GpuImage& from, GpuImage& to, int block, std::uint64_t single) {
   const auto* source = reinterpret_cast<const std::int32_t*>(from.block(block));
   auto* target = reinterpret_cast<std::int32_t*>(to.block(block));
   const float* srgb = srgb_decode_table().data();
   const LaneF weight(1.0f / static_cast<float>(from.samples));
   for (int first = 0; first < kBlockLanes; first += kVectorLanes) {
-    Vec4<LaneF> sum = {LaneF(0.0f), LaneF(0.0f), LaneF(0.0f), LaneF(0.0f)};
-    for (int s = 0; s < from.samples; ++s) {
+    Vec4<LaneF> mean{LaneF(0.0f), LaneF(0.0f), LaneF(0.0f), LaneF(0.0f)};
+    if ((~single >> first & kRegisterBits) == 0) {
       LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
-      for (int w = 0; w < from.words; ++w)
-        words[w] = load(source + (s * from.words + w) * kBlockLanes + first);
-      sum = sum + decode_texel<LaneF, LaneI>(from.format, words, srgb);
+      for (int w = 0; w < from.words; ++w) words[w] = load(source + w * kBlockLanes + first);
+      mean = decode_texel<LaneF, LaneI>(from.format, words, srgb);
+    } else {
+      mean = sum_samples(from, source, first) * weight;
     }
     LaneI encoded[4];
-    encode_texel<LaneF, LaneI>(to.format, sum * weight, encoded);
+    encode_texel<LaneF, LaneI>(to.format, mean, encoded);
     for (int w = 0; w < to.words; ++w) store(encoded[w], target + w * kBlockLanes + first);
   }
 }
 
 /// The largest depth of each pixel's samples: codes order as depths do.
-void resolve_depth_block(const GpuImage& from, GpuImage& to, int block) {
+void resolve_depth_block(const GpuImage& from, GpuImage& to, int block, std::uint64_t /*single*/) {
   const auto* source = reinterpret_cast<const std::int32_t*>(from.block(block));
   auto* target = reinterpret_cast<std::int32_t*>(to.block(block));
   std::uint32_t low = 0xffffffffu, high = 0;
@@ -77,6 +103,7 @@ HWY_AFTER_NAMESPACE();
 namespace hwsim::pipeline {
 HWY_EXPORT(resolve_block);
 HWY_EXPORT(resolve_depth_block);
+HWY_EXPORT(spread);
 HWY_EXPORT(decode_block);
 
 Image to_linear_image(const GpuImage& from, Format format, int jobs) {
@@ -117,6 +144,9 @@ void clear_image(GpuImage& image, const Pass& pass) {
     std::fill(image.depth_max.begin(), image.depth_max.end(), bits);
     return;
   }
+  std::fill(image.single_lanes.begin(), image.single_lanes.end(), ~std::uint64_t{0});
+  std::fill(image.double_lanes.begin(), image.double_lanes.end(), 0);
+  std::fill(image.stale_lanes.begin(), image.stale_lanes.end(), 0);
   const glm::vec4& c = pass.clear_color;
   using HWY_NAMESPACE::ScalarF;
   using HWY_NAMESPACE::ScalarI;
@@ -132,25 +162,46 @@ void copy_image(const GpuImage& from, GpuImage& to) {
   to.depth_max = from.depth_max;
   to.plane_count.assign(from.plane_count.size(), 0);  // read with use_all: its texels are valid
   to.stored_form = from.stored_form;
+  to.single_lanes = from.single_lanes;
+  to.double_lanes = from.double_lanes;
+  to.second_color = from.second_color;
+  to.stale_lanes.assign(from.stale_lanes.size(), 0);
   std::fill(to.cleared.begin(), to.cleared.end(), 0);
 }
 
-void resolve_image(const GpuImage& from, GpuImage& to, int jobs) {
+std::uint64_t resolve_image(GpuImage& from, GpuImage& to, bool skip_single_colors, int jobs) {
   const auto resolve = info(from.format).is_depth ? HWY_DYNAMIC_DISPATCH(resolve_depth_block)
                                                   : HWY_DYNAMIC_DISPATCH(resolve_block);
+  const bool skip = skip_single_colors && from.tracks_colors();
+  if (!skip) from.use_all(jobs);
+  std::vector<std::uint64_t> skipped(static_cast<std::size_t>(to.blocks_y));
   parallel_for(static_cast<std::size_t>(to.blocks_y), jobs, [&](std::size_t row, int) {
     for (int bx = 0; bx < to.blocks_x; ++bx) {
       const int block = static_cast<int>(row) * to.blocks_x + bx;
-      to.cleared[static_cast<std::size_t>(block)] = 0;
-      resolve(from, to, block);
+      const auto i = static_cast<std::size_t>(block);
+      const std::uint64_t single = skip ? from.single_lanes[i] : 0;
+      if (skip) from.use_first_sample(block);
+      if (skip && ~single != 0) from.use(block);
+      to.cleared[i] = 0;
+      resolve(from, to, block, single);
+      skipped[row] += static_cast<std::uint64_t>(__builtin_popcountll(single & from.lanes_inside(block)));
     }
   });
+  return std::accumulate(skipped.begin(), skipped.end(), std::uint64_t{0});
+}
+
+void spread_stale_samples(GpuImage& image, int block_index) {
+  HWY_DYNAMIC_DISPATCH(spread)(image, block_index);
 }
 
 std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* source,
                                          std::span<GpuImage* const> targets) {
   constexpr std::uint64_t kBands = 64;
   std::vector<PassCounters> chunks(kBands);
+  CropCounters read;
+  if (source != nullptr && source->tracks_colors())
+    for (int block = 0; block < source->blocks_x * source->blocks_y * source->layers; ++block)
+      count_pixel_colors(kReadPixels, *source, block, read);
   const auto band = [&](std::uint64_t amount, std::uint64_t i) {
     return amount * (i + 1) / kBands - amount * i / kBands;
   };
@@ -168,11 +219,13 @@ std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* sourc
         n.fe.cleared_tiles += band(tiles, i) * samples;
         continue;
       }
-      const std::uint64_t read = pixels * static_cast<std::uint64_t>(source->samples);
+      const std::uint64_t samples_read = pixels * static_cast<std::uint64_t>(source->samples);
       const bool depth = info(source->format).is_depth;
-      (depth ? n.mem.depth_read_bytes : n.mem.color_read_bytes) += band(read * info(source->format).bytes, i);
+      (depth ? n.mem.depth_read_bytes : n.mem.color_read_bytes) +=
+          band(samples_read * info(source->format).bytes, i);
       (depth ? n.mem.depth_write_bytes : n.mem.color_write_bytes) += band(pixels * samples * bytes, i);
-      n.resolve.read_samples += band(read, i);
+      n.resolve.read_samples += band(samples_read, i);
+      for (const PixelCounter counter : kReadPixels) n.crop.*counter += band(read.*counter, i);
       n.resolve.written_pixels += band(pixels, i);
       if (depth) continue;  // each tile moves once
       n.crop.touched_tiles += band(tiles, i);

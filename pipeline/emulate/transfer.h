@@ -9,10 +9,11 @@
 namespace hwsim::pipeline {
 
 void clear_image(GpuImage& image, const Pass& pass);
-/// Copies and resolves read every texel: use_all first.
+/// Copies every texel: use_all first.
 void copy_image(const GpuImage& from, GpuImage& to);
-/// The mean of all samples, taken in linear light; sums are in sample order.
-void resolve_image(const GpuImage& from, GpuImage& to, int jobs);
+/// The mean of all samples, taken in linear light and summed in pairs. Returns the pixels of which only one
+/// sample was read, because they hold one color.
+std::uint64_t resolve_image(GpuImage& from, GpuImage& to, bool skip_single_colors, int jobs);
 
 /// Sample 0 of every pixel, decoded from `format` to linear RGBA.
 Image to_linear_image(const GpuImage& from, Format format, int jobs);

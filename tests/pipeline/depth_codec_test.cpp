@@ -1,6 +1,6 @@
-// Packing a depth tile and unpacking it gives every sample back, bit for bit: on every tile of the scenes, and
-// on random tiles (HWSIM_RANDOM_TILES sets how many; 10,000,000 is the figure of docs/verification.md). The
-// packer's scalar arithmetic is another implementation than the vector code that wrote the planes.
+// Packing a depth tile and unpacking it gives every sample back, bit for bit: on every tile of the scenes,
+// and on random tiles (HWSIM_RANDOM_TILES sets how many; 10,000,000 is the figure of docs/verification.md).
+// The packer's scalar arithmetic is another implementation than the vector code that wrote the planes.
 #include "pipeline/depth/depth_codec.h"
 
 #include <gtest/gtest.h>
@@ -20,18 +20,18 @@ namespace {
 
 using FormCounts = std::array<std::uint64_t, kDepthTileForms>;
 
-/// The bytes that techniques 9.1 gives each form, with 16 for a plane.
+/// The bytes that techniques 9.1 gives each form, with 20 for a plane.
 std::size_t bytes_of(DepthTileForm form, const GpuImage& image) {
   const auto samples = static_cast<std::size_t>(image.samples * kBlockLanes);
   switch (form) {
     case DepthTileForm::clear:
       return 0;
     case DepthTileForm::one_plane:
-      return 16;
+      return 20;
     case DepthTileForm::two_planes:
-      return 32 + samples / 8;
+      return 40 + samples / 8;
     case DepthTileForm::four_planes:
-      return 64 + samples / 4;
+      return 80 + samples / 4;
     case DepthTileForm::offset_6:
       return 8 + samples * 7 / 8;
     case DepthTileForm::offset_14:
@@ -56,13 +56,13 @@ std::uint64_t differing_tiles(const GpuImage& image, const GpuImage& expanded, F
   return differing;
 }
 
-struct Setup {
+struct DepthSetup {
   std::shared_ptr<const Scene> scene;
   int samples;
   Format format;
 };
 
-std::uint64_t round_trip(const Setup& setup, FormCounts& forms) {
+std::uint64_t round_trip(const DepthSetup& setup, FormCounts& forms) {
   constexpr int kWidth = 321, kHeight = 181;  // tiles that the image's border cuts
   test::SampleFrame frame(setup.scene, kWidth, kHeight, setup.samples, Format::r32_float, setup.format);
   const Camera& camera = setup.scene->cameras.front();
@@ -94,8 +94,9 @@ TEST(DepthCodec, RoundTripIsExactOnEveryTileOfEveryScene) {
   FormCounts forms{};
   for (const std::string& name : scenes) {
     const auto scene = test::share(open_scene(name, hwsim::test::binary_dir() + "/test_scenes"));
-    for (const Setup& setup : {Setup{scene, 8, Format::d24_unorm_s8}, Setup{scene, 1, Format::d32_float},
-                               Setup{scene, 4, Format::d16_unorm}})
+    for (const DepthSetup& setup :
+         {DepthSetup{scene, 8, Format::d24_unorm_s8}, DepthSetup{scene, 1, Format::d32_float},
+          DepthSetup{scene, 4, Format::d16_unorm}})
       EXPECT_EQ(round_trip(setup, forms), 0u) << name << ", " << setup.samples << " samples";
   }
   for (std::size_t form = 0; form < forms.size(); ++form) {
@@ -114,12 +115,12 @@ void fill_random_tile(GpuImage& image, std::mt19937& random) {
   const auto count = static_cast<int>(random() % kMaxDepthPlanes) + 1;
   image.plane_count[0] = static_cast<std::uint8_t>(count);
   for (int p = 0; p < count; ++p)
-    image.tile_planes(0)[p] = {{static_cast<float>(random() % 65536) / 65535.0f, random_slope(random),
-                                random_slope(random)},
-                               static_cast<std::int32_t>(random() % 24000) - 8000,
-                               static_cast<std::int32_t>(random() % 24000) - 8000,
-                               0,
-                               0};
+    image.tile_planes(0)[p] = {
+        {static_cast<float>(random() % 65536) / 65535.0f, random_slope(random), random_slope(random)},
+        static_cast<float>(random() % 24000) - 8000.0f,
+        static_cast<float>(random() % 24000) - 8000.0f,
+        0,
+        0};
   for (int s = 0; s < image.samples; ++s) {
     std::uint64_t left = ~std::uint64_t{0};
     for (int p = 0; p < count; ++p) {
