@@ -3,9 +3,9 @@
 #include "algos/agaa.h"
 #include "algos/deferred.h"
 #include "algos/forward_techniques.h"
+#include "algos/post_filters.h"
 #include "algos/sbaa.h"
 #include "algos/sss.h"
-#include "algos/post_filters.h"
 #include "algos/technique.h"
 #include "algos/wire_aa.h"
 
@@ -13,13 +13,8 @@ namespace hwsim::algos {
 namespace {
 
 constexpr std::span<const TechniqueInfo> (*kFamilies[])() = {
-    forward_techniques,
-    deferred_techniques,
-    sbaa_techniques,
-    agaa_techniques,
-    sss_techniques,
-    wire_techniques,
-    post_filters,
+    forward_techniques, deferred_techniques, sbaa_techniques, agaa_techniques,
+    sss_techniques,     wire_techniques,     post_filters,
 };
 
 }  // namespace

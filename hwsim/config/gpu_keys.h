@@ -268,7 +268,8 @@ void describe(V& v, FunctionalConfig& f) {
         f.gs_max_scalars);
   v.key({"functional.late_z_on_discard", 0, 0, kNoFlags, "depth is written after a shader that can discard"},
         f.late_z_on_discard);
-  v.key({"functional.hierarchical_z", 0, 0, kNoFlags, "a coarse depth test rejects and accepts 8x8 tiles whole"},
+  v.key({"functional.hierarchical_z", 0, 0, kNoFlags,
+         "a coarse depth test rejects and accepts 8x8 tiles whole"},
         f.hierarchical_z);
   v.key({"functional.max_image_px", 1, 65536, kNoFlags, "largest width or height of an image"},
         f.max_image_px);

@@ -40,9 +40,9 @@ struct MaterialView {
 /// Image and buffer slots of a pass.
 struct ResourceView {
   std::array<const GpuImage*, kMaxImageSlots> images{};
-  std::array<Format, kMaxImageSlots> formats{};  ///< as programs read them
+  std::array<Format, kMaxImageSlots> formats{};           ///< as programs read them
   std::array<GpuImage*, kMaxColorTargets> targets{};      ///< images that programs store to
-  std::array<Format, kMaxColorTargets> target_formats{};        ///< as they store to them
+  std::array<Format, kMaxColorTargets> target_formats{};  ///< as they store to them
   std::array<std::uint32_t*, kMaxBufferSlots> buffers{};
   std::array<std::uint64_t, kMaxBufferSlots> buffer_words{};
   const MaterialView* materials = nullptr;                       ///< of the scene, in its order

@@ -9,7 +9,8 @@ namespace hwsim::pipeline {
 
 MaterialView make_material_view(const Material& material, int index, const TextureStore& textures);
 
-/// Whether some mesh has tangents or vertex colors, or some texture lies on UV set 1; without, shaders are given SurfaceVaryings up to kBasic.
+/// Whether some mesh has tangents or vertex colors, or some texture lies on UV set 1; without, shaders are
+/// given SurfaceVaryings up to kBasic.
 bool needs_full_varyings(const Scene& scene);
 
 /// By which normals follow a transform; not normalized.

@@ -115,7 +115,7 @@ struct Pass {
 
   std::vector<ImageId> targets;  ///< clear: images; copy and resolve: the destination; full-screen and
                                  ///< compute: images that shaders store to
-  ImageId source;  ///< copy and resolve
+  ImageId source;                ///< copy and resolve
   ResolveMode resolve = ResolveMode::average;  ///< depth: max
   glm::vec4 clear_color{0.0f};
   float clear_depth = 1.0f;

@@ -78,7 +78,6 @@ inline void note_store(const ResourceView& resources, int target, int lane, std:
       buffer_line(kMaxBufferSlots + target, 0) + tile * bytes + texel * bytes / kLineBytes, 0, bytes);
 }
 
-
 class FragmentLanes : public LaneFlow {
  public:
   FragmentLanes(FragmentBatch& batch, int first_lane)

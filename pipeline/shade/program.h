@@ -70,7 +70,7 @@ struct FragmentProgram {
   int varying_scalars = 0;   ///< must equal those of the vertex program; 0 for full-screen programs
   bool can_discard = false;  ///< depth writes wait for the shader unless early tests are forced
   bool writes_storage = false;
-  bool writes_depth = false;    ///< full-screen passes: gives each fragment its depth
+  bool writes_depth = false;     ///< full-screen passes: gives each fragment its depth
   bool ordered_storage = false;  ///< what it stores depends on the order of fragments
   bool reads_coverage = false;   ///< asks for its lanes' covered samples
   bool writes_mask = false;      ///< gives each lane a sample mask (pipeline_state.h, CoverageState)
