@@ -190,7 +190,8 @@ void Parser::add_run() {
                  "NAME|FILE")
       ->envname("HWSIM_GPU");
   add_overlays(sub, run.overlays);
-  sub.add_option("--engine", run.engine, "Timing engine; default queue")->type_name("roofline|queue");
+  sub.add_option("--engine", run.engine, "Timing engine; default queue")
+      ->type_name("roofline|queue|detailed");
   sub.add_option("--reference", run.reference_samples,
                  "Compare with the ray-traced reference of so many samples a pixel; default 64")
       ->check(CLI::Range(1, 65536))

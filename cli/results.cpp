@@ -113,6 +113,8 @@ Json result_json(const PointResult& point, const RunPlan& plan, const std::strin
   json["emulation"] = {
       {"wall_s", point.emulation->wall_s}, {"from_cache", point.emulation_reused}, {"skipped", skipped}};
   json["timing"] = {{"wall_s", point.timing_wall_s}};
+  if (const auto& sampled = point.timing.sampling_interval_ns)
+    json["timing"]["sampling_interval_ms"] = {(*sampled)[0] / kNsPerMs, (*sampled)[1] / kNsPerMs};
   return json;
 }
 

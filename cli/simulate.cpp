@@ -88,7 +88,7 @@ PointResult Simulator::run(const algos::TechniqueChoice& technique, const GpuCon
   point.gpu = &gpu;
   point.emulation = emulate(technique, gpu, progress, point.emulation_reused);
   const auto start = std::chrono::steady_clock::now();
-  point.timing = time_frame(point.emulation->trace, gpu, plan_.engine);
+  point.timing = time_frame(point.emulation->trace, gpu, plan_.engine, plan_.timing);
   point.timing_wall_s = seconds_since(start);
   check_invariants(point.emulation->trace, point.timing, gpu);
   measure_image(point);
