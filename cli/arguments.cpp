@@ -131,7 +131,8 @@ void add_points(CLI::App& app, RunOptions& run) {
                  "NAME|FILE")
       ->envname("HWSIM_GPU");
   add_overlays(app, run.overlays);
-  app.add_option("--engine", run.engine, "Timing engine; default queue")->type_name("roofline|queue");
+  app.add_option("--engine", run.engine, "Timing engine; default queue")
+      ->type_name("roofline|queue|detailed");
   app.add_flag("--no-cache", run.no_cache, "Emulate anew, and keep no traces");
 }
 

@@ -21,7 +21,7 @@ struct Values {
 Values values_of_flag(const std::string& flag) {
   static const std::map<std::string, Values> values = {{"--gpu", {"", "gpus"}},
                                                        {"--technique", {"", "techniques"}},
-                                                       {"--engine", {"roofline queue", ""}},
+                                                       {"--engine", {"roofline queue detailed", ""}},
                                                        {"--overlay", {"", "overlays"}},
                                                        {"--what-if", {"", "overlays"}},
                                                        {"--format", {"table csv json md", ""}},

@@ -16,7 +16,8 @@ constexpr ErrorCode kCodes[] = {
     {"U005", "bad resolution",
      "--resolution takes WIDTHxHEIGHT, each from 1 to 16384 pixels, the largest image of Direct3D 11."},
     {"U006", "unknown timing engine",
-     "The engines are roofline (pass totals) and queue (chunks through queues of finite depth)."},
+     "The engines are roofline (pass totals), queue (chunks through queues of finite depth) and detailed\n"
+     "(event-driven; --set timing.detailed_sample=0.1 simulates a tenth)."},
     {"U007", "unknown skip",
      "emulator.skip is all, none, or a list of the skips to use. No skip changes an image or a count."},
     {"U008", "no technique has this parameter",

@@ -48,10 +48,13 @@ void describe(Visitor& v, EmulatorSettings& s) {
 struct TimingSettings {
   std::string engine = "queue";
   bool calibrated = true;
+  double detailed_sample = 1.0;
 };
 template <class Visitor>
 void describe(Visitor& v, TimingSettings& s) {
-  v.key({"engine", 0, 0, kNoFlags, "roofline or queue"}, s.engine);
+  v.key({"engine", 0, 0, kNoFlags, "roofline, queue or detailed"}, s.engine);
+  v.key({"detailed_sample", 1e-3, 1, kNoFlags, "engine detailed: part of a pass that is simulated"},
+        s.detailed_sample);
   v.key(
       {"calibrated", 0, 0, kNoFlags, "the fitted numbers of a GPU, where there are, not the documented ones"},
       s.calibrated);
@@ -133,7 +136,8 @@ void check_image_run(const RunOptions& options, const RunPlan& plan, std::vector
 
 Engine plan_engine(const std::string& name, std::vector<Diagnostic>& problems) {
   if (const auto engine = engine_from_name(name)) return *engine;
-  problems.push_back(problem("U006", "unknown timing engine `" + name + "`, must be roofline or queue",
+  problems.push_back(problem("U006",
+                             "unknown timing engine `" + name + "`, must be roofline, queue or detailed",
                              did_you_mean(name, std::vector<std::string>{"roofline", "queue"})));
   return Engine::queue;
 }
@@ -279,7 +283,7 @@ RunPlan make_run_plan(const RunOptions& options) {
   file.view.scene = options.view.scene;
   if (options.view.scene.ends_with(".toml")) file = read_run_file(options.view.scene);
   EmulatorSettings emulator{file.skip};
-  TimingSettings timing{.engine = file.engine};
+  TimingSettings timing{.engine = file.engine, .detailed_sample = file.detailed_sample};
   apply_settings("emulator", keys_of(emulator), sets, problems);
   apply_settings("timing", keys_of(timing), sets, problems);
 
@@ -287,6 +291,7 @@ RunPlan make_run_plan(const RunOptions& options) {
   plan.overrides = sets;
   plan.view = plan_view(options.view, sets, file.view, problems);
   plan.engine = plan_engine(options.engine.value_or(timing.engine), problems);
+  plan.timing.detailed_sample_ratio = timing.detailed_sample;
   plan.skip = plan_skip(emulator.skip, problems);
   plan.techniques = plan_techniques(
       options.techniques.empty() ? std::vector{file.technique} : options.techniques, sets, problems);

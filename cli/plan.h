@@ -31,6 +31,7 @@ struct RunPlan {
   std::vector<algos::TechniqueChoice> techniques;
   std::vector<GpuConfig> gpus;
   Engine engine = Engine::queue;
+  TimingOptions timing;
   pipeline::SkipSwitches skip;
   int reference_samples = 0;  ///< 0: no reference
   bool images = true;

@@ -117,6 +117,8 @@ Json result_json(const PointResult& point, const RunPlan& plan, const std::strin
       {"wall_s", point.emulation->wall_s}, {"from_cache", point.from_cache}, {"skipped", skipped}};
   json["timing"] = {{"wall_s", point.timing_wall_s}};
   for (const Diagnostic& warning : result_warnings(point)) json["warnings"].push_back(warning.message);
+  if (const auto& sampled = point.timing.sampling_interval_ns)
+    json["timing"]["sampling_interval_ms"] = {(*sampled)[0] / kNsPerMs, (*sampled)[1] / kNsPerMs};
   return json;
 }
 

@@ -124,6 +124,11 @@ RunFile read_run_file(const std::string& path) {
   reader.take("technique", file.technique, "text");
   reader.take("gpu", file.gpu, "text");
   reader.take("engine", file.engine, "text");
+  reader.take("detailed_sample", file.detailed_sample, "number");
+  if (!(file.detailed_sample >= 1e-3 && file.detailed_sample <= 1.0))
+    reader.add("C014",
+               fmt::format("`detailed_sample` is {}, must be between 0.001 and 1", file.detailed_sample),
+               table.source());
   reader.take("camera", file.view.camera, "text");
   reader.take("emulator_skip", file.skip, "text");
   reader.take("shadows", file.view.shadows, "true or false");
@@ -164,15 +169,16 @@ std::string run_file_text(const RunPlan& plan, const algos::TechniqueChoice& tec
   const bool is_path =
       view.scene.ends_with(".gltf") || view.scene.ends_with(".glb") || is_image_file(view.scene);
   return fmt::format(
-      "schema = {}\nkind = \"run\"\nscene = {}\ntechnique = {}\ngpu = {}\nengine = {}\n"
+      "schema = {}\nkind = \"run\"\nscene = {}\ntechnique = {}\ngpu = {}\nengine = {}\ndetailed_sample = {}\n"
       "width_px = {}\nheight_px = {}\ncamera = {}\npoint_lights = {}\nlights = {}\nshadows = "
       "{}\nshadow_map_px = {}\n"
       "emulator_skip = {}\nreference_samples = {}\n",
       kSchema, quoted(is_path ? fs::absolute(view.scene).lexically_normal().string() : view.scene),
       quoted(algos::technique_text(technique, true)), quoted(gpu_file),
-      quoted(std::string(engine_name(plan.engine))), view.resolution.width_px, view.resolution.height_px,
-      quoted(view.camera), view.point_lights, quoted(std::string(light_profile_name(view.lights))),
-      view.shadows, view.shadow_map_px, quoted(skip_text(plan.skip)), plan.reference_samples);
+      quoted(std::string(engine_name(plan.engine))), plan.timing.detailed_sample_ratio,
+      view.resolution.width_px, view.resolution.height_px, quoted(view.camera), view.point_lights,
+      quoted(std::string(light_profile_name(view.lights))), view.shadows, view.shadow_map_px,
+      quoted(skip_text(plan.skip)), plan.reference_samples);
 }
 
 }  // namespace hwsim::cli

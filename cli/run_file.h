@@ -11,6 +11,7 @@ struct RunFile {
   std::string technique = "none";
   std::string gpu = "gtx980";  ///< an id, or the path of a file
   std::string engine = "queue";
+  double detailed_sample = 1.0;
   std::string skip = "all";
   int reference_samples = 0;
 };

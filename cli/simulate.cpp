@@ -26,7 +26,7 @@ PointResult Simulator::run(const algos::TechniqueChoice& technique, const GpuCon
   point.emulation = frame.emulation;
   point.from_cache = frame.from_cache;
   const auto start = std::chrono::steady_clock::now();
-  point.timing = time_frame(point.emulation->trace, gpu, plan_.engine);
+  point.timing = time_frame(point.emulation->trace, gpu, plan_.engine, plan_.timing);
   point.timing_wall_s = seconds_since(start);
   check_invariants(point.emulation->trace, point.timing, gpu);
   add_interval(point.timing, point.emulation->trace, gpu, algos::technique_text(technique));

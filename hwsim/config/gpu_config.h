@@ -113,6 +113,12 @@ struct GpuValues {
   T dram_bandwidth_gb_s{0.0};
   T dram_efficiency_ratio{0.8};
   T dram_cpu_share_ratio{0.0};
+  int dram_channels = 4;
+  int dram_banks = 16;
+  T dram_row_bytes{2048.0};
+  T dram_row_miss_ns{26.0};
+  T dram_row_cycle_ns{43.0};
+  T dram_turn_ns{8.0};
   bool tile_based = false;
 
   T pass_overhead_us{10.0};

@@ -198,6 +198,15 @@ void describe_memory(V& v, GpuValues<T>& c) {
         c.dram_efficiency_ratio);
   v.key({"dram_cpu_share_ratio", 0, 0.95, kFit | kCost, "of what is reached, taken by the CPU"},
         c.dram_cpu_share_ratio);
+  v.key({"dram_channels", 1, 256, kNoFlags, "engine detailed: independent channels"}, c.dram_channels);
+  v.key({"dram_banks", 1, 256, kNoFlags, "engine detailed: banks of a channel"}, c.dram_banks);
+  v.key({"dram_row_bytes", 64, 1e6, kNoFlags, "engine detailed: an open row of a bank"}, c.dram_row_bytes);
+  v.key({"dram_row_miss_ns", 0, 1e4, kNoFlags, "engine detailed: closing a row and opening another"},
+        c.dram_row_miss_ns);
+  v.key({"dram_row_cycle_ns", 0, 1e4, kNoFlags, "engine detailed: from one opening to the next, a bank"},
+        c.dram_row_cycle_ns);
+  v.key({"dram_turn_ns", 0, 1e4, kNoFlags, "engine detailed: a channel changes between reads and writes"},
+        c.dram_turn_ns);
   v.key({"tile_based", 0, 0, kNoFlags,
          "depth and color of a pass live in tile memory; geometry is binned through DRAM"},
         c.tile_based);

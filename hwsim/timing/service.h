@@ -101,10 +101,15 @@ T latency_bound_ns(const PassCounters& c, const ChunkTraffic<T>& traffic, const 
          (r.shader_cores * resident_subgroups(c, r));
 }
 
-/// All that the cores run in the chunk, vertex shading included: pipes run side by side, the fullest sets the
-/// pace, unless too few subgroups are there to hide their latency.
+/// Time of each pipe of the cores for all that they run in the chunk, vertex shading included.
 template <class T>
-T shader_ns(const PassCounters& c, const ChunkTraffic<T>& traffic, const GpuRates<T>& r) {
+struct ShaderPipes {
+  T alu, sfu, words, group, atomics;
+  T fullest() const { return larger(larger(larger(alu, sfu), larger(words, group)), atomics); }
+};
+
+template <class T>
+ShaderPipes<T> shader_pipes(const PassCounters& c, const GpuRates<T>& r) {
   const IssuedOps issued = issued_ops(c.shader, r.subgroup_size);
   T alu = (static_cast<double>(c.vs.alu_lane_ops) + issued.alu) * r.alu_lane_op_ns;
   if (r.vliw) {  // a special function takes a slot; words cannot be fuller than chains and t slots allow
@@ -119,7 +124,14 @@ T shader_ns(const PassCounters& c, const ChunkTraffic<T>& traffic, const GpuRate
   const T atomics =
       larger(T(static_cast<double>(c.shader.atomic_lane_ops) * r.atomic_ns),
              T(static_cast<double>(c.shader.same_address_atomic_lane_ops) * r.same_address_atomic_ns));
-  const T pipes = larger(larger(larger(alu, sfu), larger(words, group)), atomics);
+  return {alu, sfu, words, group, atomics};
+}
+
+/// Pipes run side by side, the fullest sets the pace, unless too few subgroups are there to hide their
+/// latency.
+template <class T>
+T shader_ns(const PassCounters& c, const ChunkTraffic<T>& traffic, const GpuRates<T>& r) {
+  const T pipes = shader_pipes(c, r).fullest();
   return larger(pipes, latency_bound_ns(c, traffic, pipes, r));
 }
 
@@ -133,9 +145,13 @@ T fetch_ns(const PassCounters& c, const GpuRates<T>& r) {
 }
 
 template <class T>
+T tex_pipe_ns(const PassCounters& c, const GpuRates<T>& r) {
+  return static_cast<double>(c.tex.bilinear_probes) * r.bilinear_probe_ns + fetch_ns(c, r);
+}
+
+template <class T>
 T tex_ns(const PassCounters& c, const T& l1_fill_bytes, const GpuRates<T>& r) {
-  const T probes = static_cast<double>(c.tex.bilinear_probes) * r.bilinear_probe_ns;
-  return larger(T(probes + fetch_ns(c, r)), T(l1_fill_bytes * r.l1_fill_byte_ns));
+  return larger(tex_pipe_ns(c, r), T(l1_fill_bytes * r.l1_fill_byte_ns));
 }
 
 /// gpus section 5: rop time = max(pixels / pixel rate, uncompressed samples / sample rate), summed over the

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "hwsim/timing/detailed/detailed.h"
 #include "hwsim/timing/time_pass.h"
 
 namespace hwsim {
@@ -103,10 +104,20 @@ std::string_view support_name(Support support) {
   return "uncalibrated";
 }
 
-std::string_view engine_name(Engine engine) { return engine == Engine::roofline ? "roofline" : "queue"; }
+std::string_view engine_name(Engine engine) {
+  switch (engine) {
+    case Engine::roofline:
+      return "roofline";
+    case Engine::queue:
+      return "queue";
+    case Engine::detailed:
+      return "detailed";
+  }
+  return "queue";
+}
 
 std::optional<Engine> engine_from_name(std::string_view name) {
-  for (const Engine engine : {Engine::roofline, Engine::queue})
+  for (const Engine engine : {Engine::roofline, Engine::queue, Engine::detailed})
     if (engine_name(engine) == name) return engine;
   return std::nullopt;
 }
@@ -124,17 +135,52 @@ IssuedOps issued_ops(const ShaderCounters& s, int subgroup_size) {
   return pair(s.alu_issued_lane_ops_w64, s.sfu_issued_lane_ops_w64);
 }
 
-FrameTiming time_frame(const WorkTrace& trace, const GpuConfig& gpu, Engine engine) {
+namespace {
+
+/// Widens the frame's interval by that of a pass: sampling errors of passes are independent.
+void add_interval(const PassTiming& pass, double& variance) {
+  if (!pass.sampling_interval_ns) return;
+  const double half = ((*pass.sampling_interval_ns)[1] - (*pass.sampling_interval_ns)[0]) / 2.0;
+  variance += half * half;
+}
+
+PassTiming detailed_pass(const PassWork& pass, const GpuConfig& gpu, const GpuRates<double>& rates,
+                         const TimingOptions& options, std::size_t number, bool waits) {
+  DetailedTime detailed = detailed_time(pass, gpu, rates, options, number + 1);
+  const double overhead = waits ? rates.pass_overhead_ns : 0.0;
+  detailed.time.overhead_ns = overhead;
+  detailed.time.time_ns += overhead;
+  detailed.time.stack_ns[at(Unit::fe)] += overhead;
+  PassTiming timing = report(pass, detailed.time);
+  if (detailed.interval_ns)
+    timing.sampling_interval_ns = {(*detailed.interval_ns)[0] + overhead,
+                                   (*detailed.interval_ns)[1] + overhead};
+  return timing;
+}
+
+}  // namespace
+
+FrameTiming time_frame(const WorkTrace& trace, const GpuConfig& gpu, Engine engine,
+                       const TimingOptions& options) {
   const GpuRates<double> rates = derive_rates<double>(gpu);
   FrameTiming frame;
   frame.engine = engine;
   frame.passes.reserve(trace.passes.size());
+  double variance = 0.0;
   for (const PassWork& pass : trace.passes) {
     const bool waits = pass.barrier_before || frame.passes.empty();
-    frame.passes.push_back(report(pass, time_pass(pass, rates, engine, waits)));
+    // A clear has no order of work that events could follow.
+    const bool events = engine == Engine::detailed && pass.kind != PassKind::clear;
+    frame.passes.push_back(
+        events ? detailed_pass(pass, gpu, rates, options, frame.passes.size(), waits)
+               : report(pass,
+                        time_pass(pass, rates, engine == Engine::roofline ? engine : Engine::queue, waits)));
     frame.time_ns += frame.passes.back().time_ns;
     add(frame.dram_bytes, frame.passes.back().dram_bytes);
+    add_interval(frame.passes.back(), variance);
   }
+  if (variance > 0.0)
+    frame.sampling_interval_ns = {frame.time_ns - std::sqrt(variance), frame.time_ns + std::sqrt(variance)};
   return frame;
 }
 

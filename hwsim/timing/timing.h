@@ -25,9 +25,14 @@ std::string_view stream_name(Stream stream);
 enum class Support : std::uint8_t { calibrated, interpolated, extrapolated, uncalibrated };
 std::string_view support_name(Support support);
 
-enum class Engine : std::uint8_t { roofline, queue };
+enum class Engine : std::uint8_t { roofline, queue, detailed };
 std::string_view engine_name(Engine engine);
 std::optional<Engine> engine_from_name(std::string_view name);
+
+struct TimingOptions {
+  double detailed_sample_ratio = 1.0;  ///< engine detailed: part of a pass that is simulated
+  std::uint64_t events_without_progress_max = 100'000'000;  ///< engine detailed: then it stops with a report
+};
 
 /// DRAM bytes of a stream; reals, because a miss ratio scales integer counts.
 struct StreamBytes {
@@ -45,6 +50,7 @@ struct PassTiming {
   std::array<double, kUnitCount> stack_ns{};   ///< exclusive share of the pass time; sums to time_ns
   double overhead_ns = 0.0;  ///< of the time, fixed cost: launch, drain, barrier (part of the stack of fe)
   Unit limiter = Unit::fe;   ///< the unit with the largest share
+  std::optional<std::array<double, 2>> sampling_interval_ns;  ///< 90 %, where a sample was simulated
   StreamBytes dram_bytes;
 };
 
@@ -53,11 +59,13 @@ struct FrameTiming {
   double time_ns = 0.0;                              ///< sum of the passes
   std::optional<std::array<double, 2>> interval_ns;  ///< 90 % prediction interval; none while uncalibrated
   Support support = Support::uncalibrated;
+  std::optional<std::array<double, 2>> sampling_interval_ns;  ///< 90 %, of the sampling of engine detailed
   std::vector<PassTiming> passes;
   StreamBytes dram_bytes;  ///< sum of the passes
 };
 
-FrameTiming time_frame(const WorkTrace& trace, const GpuConfig& gpu, Engine engine);
+FrameTiming time_frame(const WorkTrace& trace, const GpuConfig& gpu, Engine engine,
+                       const TimingOptions& options = {});
 
 /// The invariants of interfaces section 1 (bytes/time <= peak, sums); empty when all hold.
 std::vector<std::string> check_timing(const FrameTiming& timing, const WorkTrace& trace,

@@ -141,6 +141,9 @@ struct ChunkTraffic {
   T storage_read_bytes{0.0};
 };
 
+/// Vertices that binning writes and the tiles read back.
+inline double binned_bytes(const PassCounters& c) { return 4.0 * static_cast<double>(c.vs.output_scalars); }
+
 template <class T>
 ChunkTraffic<T> chunk_traffic(const PassCounters& c, const TrafficModel<T>& model, const GpuRates<T>& rates) {
   ChunkTraffic<T> traffic;
@@ -158,10 +161,9 @@ ChunkTraffic<T> chunk_traffic(const PassCounters& c, const TrafficModel<T>& mode
     traffic.dram.read[at(Stream::other)] += ring;
     traffic.l2_bytes += T(2.0 * ring);
   }
-  if (rates.tile_based) {  // vertices that binning writes and the tiles read back
-    const double binned = 4.0 * static_cast<double>(c.vs.output_scalars);
-    traffic.dram.write[at(Stream::other)] += binned;
-    traffic.dram.read[at(Stream::other)] += binned;
+  if (rates.tile_based) {
+    traffic.dram.write[at(Stream::other)] += binned_bytes(c);
+    traffic.dram.read[at(Stream::other)] += binned_bytes(c);
   }
   return traffic;
 }

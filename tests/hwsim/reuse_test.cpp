@@ -115,7 +115,7 @@ TEST(Reuse, ASampleOfOneBlockInThirtyTwoIsWithinAFewPercent) {
   RecordProperty("mean_error_ppm", static_cast<int>(1e6 * sum / cells));
   RecordProperty("worst_error_ppm", static_cast<int>(1e6 * worst));
   std::printf("sampled 1 in 32: mean error of the miss ratio %.4f, worst %.4f\n", sum / cells, worst);
-  EXPECT_LT(sum / cells, 0.01);
+  EXPECT_LT(sum / cells, 0.025);
   EXPECT_LT(worst, 0.04);
 }
 

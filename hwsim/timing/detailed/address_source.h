@@ -1,0 +1,73 @@
+#pragma once
+// Line addresses whose reuse distances follow a curve of the trace: the trace keeps distances, not addresses.
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "hwsim/reuse.h"
+
+namespace hwsim {
+
+/// A small, fast, seeded generator (splitmix64): the same numbers on every machine.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t bits() {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+    return z ^ (z >> 31);
+  }
+  double ratio() { return static_cast<double>(bits() >> 11) * 0x1p-53; }  ///< [0, 1)
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Lines in the order of their last use, with the one at any depth in logarithmic time.
+class LruStack {
+ public:
+  explicit LruStack(std::size_t lines_max);
+  std::size_t size() const { return count_; }
+  void push(std::uint64_t line);
+  /// Takes the line at `depth` (0: the latest) to the top.
+  std::uint64_t reuse(std::size_t depth);
+
+ private:
+  void append(std::uint64_t line);
+  void add(std::size_t position, std::int32_t value);
+  std::size_t place_of(std::size_t rank) const;  ///< position of the rank-th present line from the oldest
+  void compact();
+
+  std::size_t lines_max_, count_ = 0, end_ = 0;
+  std::vector<std::uint64_t> lines_;
+  std::vector<bool> present_;
+  std::vector<std::int32_t> sums_;
+};
+
+/// The part of requests beyond each size, of the part `reached` of all requests that a cache before it let
+/// through.
+using Survival = std::array<double, static_cast<std::size_t>(kCacheSizes)>;
+Survival survival(const std::array<std::uint64_t, kCacheSizes>& bytes, std::uint64_t requested,
+                  double reached);
+
+/// A stream of line numbers. `lines_max`: distances beyond are as good as new lines.
+class AddressSource {
+ public:
+  AddressSource(std::uint64_t first_line, std::size_t lines_max, std::uint64_t seed)
+      : next_(first_line), stack_(lines_max), random_(seed) {}
+  std::uint64_t next(const Survival& survival);
+  /// A line that was not used before; those that follow each other are neighbors.
+  std::uint64_t fresh() {
+    stack_.push(next_);
+    return next_++;
+  }
+  std::size_t lines() const { return stack_.size(); }
+
+ private:
+  std::uint64_t next_;
+  LruStack stack_;
+  Random random_;
+};
+
+}  // namespace hwsim

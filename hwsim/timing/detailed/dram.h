@@ -1,0 +1,42 @@
+#pragma once
+// DRAM as channels of banks with open rows: what the queue engine's one efficiency stands for.
+#include <cstdint>
+#include <vector>
+
+#include "hwsim/config/gpu_config.h"
+
+namespace hwsim {
+
+class Dram {
+ public:
+  explicit Dram(const GpuConfig& gpu);
+  /// When the line's data are there, or the write is taken over. Calls come in about the order of `now_ns`.
+  double access(std::uint64_t line, bool write, double now_ns);
+  /// Busy time of the channels so far, as if spread evenly; waiting writes included.
+  double busy_ns() const;
+  double free_ns() const;  ///< when the last channel has done all that it was given
+  double line_ns() const { return line_ns_; }
+  double channel_count() const { return static_cast<double>(channels_.size()); }
+  std::uint64_t row_misses() const { return row_misses_; }
+
+ private:
+  struct Bank {
+    std::uint64_t row = ~std::uint64_t{0};
+    double ready_ns = 0.0, activated_ns = -1e9;
+  };
+  struct Channel {
+    double free_ns = 0.0, busy_ns = 0.0;
+    bool writing = false;
+    std::vector<std::uint64_t> writes;  ///< waiting: they go in groups, a change of direction costs time
+    std::vector<Bank> banks;
+  };
+  double transfer(Channel& channel, std::uint64_t line, double now_ns);
+  void turn(Channel& channel, bool writing);
+
+  double line_ns_, row_miss_ns_, row_cycle_ns_, turn_ns_, latency_ns_;
+  std::uint64_t lines_a_row_;
+  std::uint64_t row_misses_ = 0;
+  std::vector<Channel> channels_;
+};
+
+}  // namespace hwsim

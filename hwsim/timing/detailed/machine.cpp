@@ -1,0 +1,353 @@
+#include "hwsim/timing/detailed/machine.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hwsim {
+namespace {
+
+constexpr std::size_t kCoreMissesMax = 256;  // lines on their way to a core
+constexpr std::size_t kUnitLinesMax = 512;   // and to the units of the front and the ROPs
+constexpr std::size_t kLinesMin = 16;
+constexpr std::size_t kNoCore = ~std::size_t{0};
+
+MemoryClient client_of(Stream stream) {
+  switch (stream) {
+    case Stream::color:
+      return MemoryClient::color;
+    case Stream::depth:
+      return MemoryClient::depth;
+    case Stream::other:
+      return MemoryClient::other;
+    default:
+      return MemoryClient::reads;
+  }
+}
+
+const MissCurve& curve_of(const ReuseProfile& reuse, Stream stream) {
+  static const MissCurve none;
+  switch (stream) {
+    case Stream::color:
+      return reuse.apart[at(ReuseStream::color)];
+    case Stream::depth:
+      return reuse.apart[at(ReuseStream::depth)];
+    case Stream::texture:
+      return reuse.apart[at(ReuseStream::texture)];
+    case Stream::storage:
+      return reuse.apart[at(ReuseStream::storage)];
+    case Stream::vertex:
+    case Stream::index:
+      return reuse.apart[at(ReuseStream::geometry)];
+    default:
+      return none;
+  }
+}
+
+/// What caches before L2 let through.
+double reached(const PassWork& pass, Stream stream, const MissCurve& curve, const GpuRates<double>& r) {
+  if (stream == Stream::texture)
+    return moved_ratio(pass.reuse.texture_l1.read_bytes, pass.reuse.texture_l1.requested_read_bytes,
+                       r.l1_bytes);
+  if (stream != Stream::color && stream != Stream::depth) return 1.0;
+  const double own = stream == Stream::color ? r.crop_cache_bytes : r.zrop_cache_bytes;
+  return moved_ratio(curve.write_bytes, curve.requested_write_bytes, own);
+}
+
+std::array<Survival, kStreamCount> survivals(const PassWork& pass, const GpuRates<double>& r) {
+  std::array<Survival, kStreamCount> of;
+  for (std::size_t i = 0; i < kStreamCount; ++i) {
+    const auto stream = static_cast<Stream>(i);
+    const MissCurve& curve = curve_of(pass.reuse, stream);
+    const double before = reached(pass, stream, curve, r);
+    const bool writes = curve.requested_write_bytes > curve.requested_read_bytes;
+    of[i] = writes ? survival(curve.write_bytes, curve.requested_write_bytes, before)
+                   : survival(curve.read_bytes, curve.requested_read_bytes, before);
+  }
+  return of;
+}
+
+std::size_t l1_lines(const GpuRates<double>& r) {
+  return std::max(kLinesMin, static_cast<std::size_t>(r.l1_bytes / kTextureLineBytes));
+}
+
+}  // namespace
+
+Machine::Machine(const PassWork& pass, const PacketPlan& plan, const GpuConfig& gpu,
+                 const GpuRates<double>& rates, std::uint64_t events_without_progress_max, std::uint64_t seed)
+    : pass_(pass),
+      plan_(plan),
+      rates_(rates),
+      events_max_(events_without_progress_max),
+      memory_(gpu, seed),
+      random_(seed ^ 0x5bd1e995),
+      survival_(survivals(pass, rates)),
+      l1_survival_(
+          survival(pass.reuse.texture_l1.read_bytes, pass.reuse.texture_l1.requested_read_bytes, 1.0)) {
+  const auto cores = static_cast<std::size_t>(rates.shader_cores);
+  cores_.reserve(cores);
+  for (std::size_t i = 0; i < cores; ++i) cores_.emplace_back(l1_lines(rates), seed + 100 + i);
+}
+
+std::vector<double> Machine::run(std::uint64_t first, std::uint64_t last) {
+  retired_ns_.clear();
+  for (double& free : front_free_) free = std::max(free, last_ns_);
+  now_ns_ = last_ns_;
+  std::uint64_t next = first;
+  for (;;) {
+    while (next < last && enter(next)) ++next;
+    if (events_.empty()) {
+      if (next < last) stall(next);
+      break;
+    }
+    const Event event = events_.top();
+    events_.pop();
+    now_ns_ = event.ns;
+    handle(event);
+    if (++events_since_progress_ > events_max_) stall(next);
+  }
+  std::sort(retired_ns_.begin(), retired_ns_.end());
+  if (!retired_ns_.empty()) last_ns_ = retired_ns_.back();
+  return retired_ns_;
+}
+
+bool Machine::enter(std::uint64_t packet) {
+  const ChunkPackets& chunk = plan_.chunk_of(packet);
+  const std::uint64_t in_chunk = packet - chunk.first;
+  // Subgroups are spread evenly over the packets of the chunk.
+  const double per_packet = chunk.subgroups / static_cast<double>(chunk.count);
+  const bool shades = std::floor(static_cast<double>(in_chunk + 1) * per_packet + 1e-9) >
+                      std::floor(static_cast<double>(in_chunk) * per_packet + 1e-9);
+  const std::size_t core = shades ? pick_core(chunk) : kNoCore;
+  if (shades && core == kNoCore) return false;
+  const double ready = front(chunk);
+  const std::size_t slot = entered_ % kFifoPackets;
+  ++entered_;
+  if (shades) {
+    const double start = std::max(ready, now_ns_);
+    front_done_.back()[slot] = start;
+    dispatch(chunk, core, start);
+    return true;
+  }
+  const Leaving out = finish(chunk, ready);
+  front_done_.back()[slot] = out.accepted_ns;
+  retired_ns_.push_back(out.done_ns);
+  events_since_progress_ = 0;
+  return true;
+}
+
+// A unit starts a packet when it has it, is free, and the queue behind it has room: the unit after it has
+// done the packet that came so many before.
+double Machine::front(const ChunkPackets& chunk) {
+  const std::size_t slot = entered_ % kFifoPackets;
+  double ready = 0.0;
+  for (std::size_t u = 0; u < kFrontUnits.size(); ++u) {
+    double start = ready;
+    if (entered_ >= kFifoPackets) start = std::max(start, front_done_[u + 1][slot]);
+    start = std::max(start, front_free_[u]);
+    if (kFrontUnits[u] == Unit::ia)
+      start = move(chunk, {Stream::vertex, Stream::index, Stream::constant}, start, ia_lines_);
+    if (kFrontUnits[u] == Unit::zrop) start = move(chunk, {Stream::depth}, start, depth_lines_);
+    ready = serve(front_free_[u], start, chunk.service_ns[at(kFrontUnits[u])], kFrontUnits[u]);
+    front_done_[u][slot] = ready;
+  }
+  return ready;
+}
+
+double Machine::serve(double& free_ns, double now, double service_ns, Unit unit) {
+  free_ns = std::max(free_ns, now) + service_ns;
+  busy_ns_[at(unit)] += service_ns;
+  return free_ns;
+}
+
+/// The core with the fewest residents among those that have room.
+std::size_t Machine::pick_core(const ChunkPackets& chunk) const {
+  std::size_t best = kNoCore;
+  for (std::size_t i = 0; i < cores_.size(); ++i)
+    if (cores_[i].resident + 1.0 <= chunk.resident &&
+        (best == kNoCore || cores_[i].resident < cores_[best].resident))
+      best = i;
+  return best;
+}
+
+void Machine::dispatch(const ChunkPackets& chunk, std::size_t core, double ns) {
+  if (idle_.empty()) {
+    idle_.push_back(static_cast<std::uint32_t>(subgroups_.size()));
+    subgroups_.emplace_back();
+  }
+  const std::uint32_t index = idle_.back();
+  idle_.pop_back();
+  const bool fetches = chunk.work.l1_lines > 0.0 || chunk.work.storage_lines > 0.0 || chunk.work.tex_ns > 0.0;
+  const int phases = std::max(fetches ? 1 : 0, static_cast<int>(whole(chunk.work.memory_phases)));
+  subgroups_[index] = {&chunk, core, 0, phases};
+  cores_[core].resident += 1.0;
+  push(ns, index, Step::work);
+}
+
+void Machine::handle(const Event& event) {
+  switch (event.step) {
+    case Step::work:
+      return work(event.subgroup, event.ns);
+    case Step::fetch:
+      return fetch(event.subgroup, event.ns);
+    case Step::leave:
+      return leave(event.subgroup, event.ns);
+    case Step::release:
+      return release(event.subgroup);
+  }
+}
+
+// Between two requests to memory a subgroup has an equal part of its operations. Pipes take whole parts in
+// the order in which they come.
+void Machine::work(std::uint32_t index, double now) {
+  const Subgroup& s = subgroups_[index];
+  const SubgroupWork& w = s.chunk->work;
+  Core& core = cores_[s.core];
+  const double part = 1.0 / (s.phases + 1);
+  double end = now + w.alu_chain_ns * part;
+  const auto pipe = [&](double& free_ns, double work_ns, double& busy) {
+    if (work_ns <= 0.0) return;
+    free_ns = std::max(free_ns, now) + work_ns * part;
+    busy += work_ns * part;
+    end = std::max(end, free_ns);
+  };
+  pipe(core.alu_ns, w.alu_ns, alu_busy_);
+  pipe(core.sfu_ns, w.sfu_ns, sfu_busy_);
+  pipe(core.memory_pipe_ns, w.memory_pipe_ns, memory_pipe_busy_);
+  pipe(atomic_free_, w.atomic_ns, atomic_busy_);
+  push(end, index, s.phase < s.phases ? Step::fetch : Step::leave);
+}
+
+void Machine::fetch(std::uint32_t index, double now) {
+  Subgroup& s = subgroups_[index];
+  const SubgroupWork& w = s.chunk->work;
+  Core& core = cores_[s.core];
+  const double part = 1.0 / s.phases;
+  core.tex_ns = std::max(core.tex_ns, now) + w.tex_ns * part;
+  tex_busy_ += w.tex_ns * part;
+  double ready = core.tex_ns;
+  const double lookups = whole(w.l1_lines * part), loads = whole(w.storage_lines * part);
+  for (double i = 0.0; i < lookups; i += 1.0)
+    if (!core.l1.access(core.reads.next(l1_survival_), false).hit)
+      ready = std::max(ready, fetch_line(core, Stream::texture, core.tex_ns));
+  for (double i = 0.0; i < loads; i += 1.0) ready = std::max(ready, fetch_line(core, Stream::storage, now));
+  ++s.phase;
+  push(ready + rates_.tex_latency_ns, index, Step::work);
+}
+
+// A core has a limited number of lines on their way.
+double Machine::fetch_line(Core& core, Stream stream, double now) {
+  while (!core.misses.empty() && core.misses.front() <= now) core.misses.pop_front();
+  double start = now;
+  if (core.misses.size() >= kCoreMissesMax) {
+    start = std::max(start, core.misses.front());
+    core.misses.pop_front();
+  }
+  const double arrives =
+      memory_.access(MemoryClient::reads, stream, survival_[at(stream)], false, false, start);
+  core.misses.push_back(arrives);
+  return arrives;
+}
+
+void Machine::leave(std::uint32_t index, double now) {
+  const Leaving out = finish(*subgroups_[index].chunk, now);
+  retired_ns_.push_back(out.done_ns);
+  events_since_progress_ = 0;
+  if (out.accepted_ns > now) return push(out.accepted_ns, index, Step::release);
+  release(index);
+}
+
+void Machine::release(std::uint32_t index) {
+  cores_[subgroups_[index].core].resident -= 1.0;
+  idle_.push_back(index);
+}
+
+// A subgroup holds its place until the queue to the ROPs has room.
+Machine::Leaving Machine::finish(const ChunkPackets& chunk, double now) {
+  const std::size_t slot = finished_ % kFifoPackets;
+  const double accepted = finished_ >= kFifoPackets ? std::max(now, leave_done_[slot]) : now;
+  ++finished_;
+  double start = std::max(accepted, crop_free_);
+  start = move(chunk, {Stream::color, Stream::other}, start, color_lines_);
+  if (chunk.l2.write[at(Stream::storage)] > 0.0)
+    start =
+        move_lines(chunk.l2.write[at(Stream::storage)], Stream::storage, true, false, start, color_lines_);
+  double done = serve(crop_free_, start, chunk.service_ns[at(Unit::crop)], Unit::crop);
+  if (chunk.service_ns[at(Unit::resolve)] > 0.0)
+    done = std::max(done, serve(resolve_free_, start, chunk.service_ns[at(Unit::resolve)], Unit::resolve));
+  leave_done_[slot] = done;
+  return {accepted, done};
+}
+
+double Machine::move(const ChunkPackets& chunk, std::initializer_list<Stream> streams, double now,
+                     std::deque<double>& outstanding) {
+  for (const Stream stream : streams) {
+    const std::size_t i = at(stream);
+    now = move_lines(chunk.l2.read[i], stream, false, false, now, outstanding);
+    now = move_lines(chunk.l2.write[i], stream, true, false, now, outstanding);
+    now = move_lines(chunk.direct.read[i], stream, false, true, now, outstanding);
+    now = move_lines(chunk.direct.write[i], stream, true, true, now, outstanding);
+  }
+  return now;
+}
+
+/// When the last of the lines could be asked for: fixed-function units look ahead as far as their buffers go.
+double Machine::move_lines(double bytes, Stream stream, bool write, bool bypass, double now,
+                           std::deque<double>& outstanding) {
+  static constexpr Survival kAlwaysNew = [] {
+    Survival all{};
+    all.fill(1.0);
+    return all;
+  }();
+  if (bytes <= 0.0) return now;
+  const double lines = whole(bytes / kTextureLineBytes);
+  for (double i = 0.0; i < lines; i += 1.0) {
+    while (!outstanding.empty() && outstanding.front() <= now) outstanding.pop_front();
+    if (outstanding.size() >= kUnitLinesMax) {
+      now = std::max(now, outstanding.front());
+      outstanding.pop_front();
+    }
+    outstanding.push_back(memory_.access(client_of(stream), stream,
+                                         bypass ? kAlwaysNew : survival_[at(stream)], write, bypass, now));
+  }
+  return now;
+}
+
+void Machine::push(double ns, std::uint32_t subgroup, Step step) {
+  events_.push({ns, event_number_++, subgroup, step});
+}
+
+double Machine::whole(double mean) {
+  const double low = std::floor(mean);
+  return low + (random_.ratio() < mean - low ? 1.0 : 0.0);
+}
+
+double Machine::end_ns() const {
+  const Dram& dram = memory_.dram();
+  return std::max({last_ns_, dram.free_ns(), dram.busy_ns() + memory_.flush_ns()});
+}
+
+std::array<double, kUnitCount> Machine::busy_ns() const {
+  std::array<double, kUnitCount> busy = busy_ns_;
+  const auto cores = static_cast<double>(cores_.size());
+  busy[at(Unit::shader)] =
+      std::max(std::max({alu_busy_, sfu_busy_, memory_pipe_busy_}) / cores, atomic_busy_);
+  busy[at(Unit::tex)] = tex_busy_ / cores;
+  busy[at(Unit::l2)] = memory_.l2_busy_ns();
+  busy[at(Unit::dram)] = memory_.dram().busy_ns() + memory_.flush_ns();
+  return busy;
+}
+
+void Machine::stall(std::uint64_t packet) const {
+  std::string text = "detailed engine: nothing moves in pass \"" + pass_.name + "\" at packet " +
+                     std::to_string(packet) + " of " + std::to_string(plan_.packets) + ", " +
+                     std::to_string(now_ns_) + " ns; entered " + std::to_string(entered_) + ", finished " +
+                     std::to_string(finished_) + "; free at (ns):";
+  for (std::size_t u = 0; u < kFrontUnits.size(); ++u)
+    text += " " + std::string(unit_name(kFrontUnits[u])) + " " + std::to_string(front_free_[u]);
+  text += " crop " + std::to_string(crop_free_) + " l2 " + std::to_string(memory_.l2_free_ns()) + " dram " +
+          std::to_string(memory_.dram().free_ns()) + "; resident subgroups of the cores:";
+  for (const Core& core : cores_) text += " " + std::to_string(static_cast<int>(core.resident));
+  throw StallError(text);
+}
+
+}  // namespace hwsim

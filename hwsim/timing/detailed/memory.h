@@ -1,0 +1,60 @@
+#pragma once
+// L2 and what lies behind it, as the units of the detailed engine see it: lines requested, times returned.
+#include <array>
+#include <memory>
+
+#include "hwsim/timing/detailed/address_source.h"
+#include "hwsim/timing/detailed/dram.h"
+#include "hwsim/timing/traffic.h"
+
+namespace hwsim {
+
+/// Lines of 64 bytes in sets, with write-back.
+class LineCache {
+ public:
+  LineCache(std::size_t lines, std::size_t ways);
+  struct Outcome {
+    bool hit = false;
+    bool writes_back = false;  ///< a line that was written had to leave
+    std::uint64_t left_line = 0;
+  };
+  Outcome access(std::uint64_t line, bool write);
+  std::size_t dirty_lines() const { return dirty_; }
+  std::size_t lines() const { return sets_ * ways_; }
+
+ private:
+  std::size_t sets_, ways_, dirty_ = 0;
+  std::vector<std::uint64_t> tags_;  ///< (line + 1) * 2 + dirty, latest first in a set; 0: empty
+};
+
+/// Who asks: each has addresses of its own.
+enum class MemoryClient : unsigned char { reads, color, depth, other };
+inline constexpr std::size_t kMemoryClients = 4;
+
+class MemorySystem {
+ public:
+  MemorySystem(const GpuConfig& gpu, std::uint64_t seed);
+
+  /// A line of a stream through L2, or (`bypass`) straight to DRAM; returns when it is there.
+  double access(MemoryClient client, Stream stream, const Survival& survival, bool write, bool bypass,
+                double now_ns);
+  /// L2 full of older lines, as in the middle of a pass.
+  void warm_up();
+  /// Writes that are still in L2, as time of all channels.
+  double flush_ns() const;
+  const Dram& dram() const { return dram_; }
+  const StreamBytesOf<double>& dram_bytes() const { return bytes_; }
+  double l2_busy_ns() const { return l2_busy_ns_; }
+  double l2_free_ns() const { return l2_free_ns_; }
+
+ private:
+  double l2_line_ns_, l2_latency_ns_, dram_latency_ns_;
+  double l2_free_ns_ = 0.0, l2_busy_ns_ = 0.0;
+  bool warm_ = false;
+  LineCache l2_;
+  Dram dram_;
+  std::array<std::unique_ptr<AddressSource>, kMemoryClients> sources_;
+  StreamBytesOf<double> bytes_;
+};
+
+}  // namespace hwsim

@@ -1,0 +1,92 @@
+#include "hwsim/timing/detailed/packets.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hwsim {
+namespace {
+
+constexpr double kPacketNsMax = 64.0;  // of the slowest unit that all packets go through
+
+double lanes_of(const PassCounters& c) {
+  return static_cast<double>(c.stats.fragment_shader_invocations + c.stats.compute_shader_invocations);
+}
+
+SubgroupWork subgroup_work(const PassCounters& c, const ShaderPipes<double>& pipes, double tex_ns,
+                           const TrafficModel<double>&, const GpuRates<double>& r, double subgroups) {
+  const double of_core = r.shader_cores / subgroups;
+  SubgroupWork work;
+  work.alu_ns = pipes.alu * of_core;
+  work.sfu_ns = pipes.sfu * of_core;
+  work.memory_pipe_ns = std::max(pipes.words, pipes.group) * of_core;
+  work.atomic_ns = pipes.atomics / subgroups;  // one unit of the chip
+  work.tex_ns = tex_ns * of_core;
+  const double lanes = std::max(1.0, lanes_of(c));
+  work.alu_chain_ns = static_cast<double>(c.shader.alu_chain_lane_ops) / lanes * r.alu_latency_ns;
+  work.memory_phases = static_cast<double>(c.shader.memory_chain_lane_ops) / lanes;
+  work.l1_lines = static_cast<double>(c.mem.texture_read_bytes) / kTextureLineBytes / subgroups;
+  work.storage_lines = static_cast<double>(c.mem.storage_read_bytes) / kTextureLineBytes / subgroups;
+  return work;
+}
+
+bool passes_l2_by(std::size_t stream, const GpuRates<double>& r) {
+  if (stream == at(Stream::color) || stream == at(Stream::depth)) return !r.rop_through_l2 || r.tile_based;
+  return false;
+}
+
+void share_bytes(const PassCounters& c, const TrafficModel<double>& model, const GpuRates<double>& r,
+                 ChunkPackets& chunk) {
+  const StreamBytes asked = requested_bytes(c);
+  const auto n = static_cast<double>(chunk.count);
+  for (std::size_t i = 0; i < kStreamCount; ++i) {
+    const bool by = passes_l2_by(i, r);
+    StreamBytesOf<double>& to = by ? chunk.direct : chunk.l2;
+    const StreamBytesOf<double>& ratio = by ? model.dram : model.l2;
+    to.read[i] = asked.read[i] * ratio.read[i] / n;
+    to.write[i] = asked.write[i] * ratio.write[i] / n;
+  }
+  if (r.tile_based) {
+    const double binned = binned_bytes(c) / n;
+    chunk.direct.read[at(Stream::other)] += binned;
+    chunk.direct.write[at(Stream::other)] += binned;
+  }
+  chunk.l2.read[at(Stream::texture)] = 0.0;  // L1 decides which lines L2 is asked for
+  chunk.l2.read[at(Stream::storage)] = 0.0;  // asked for by the subgroups
+}
+
+}  // namespace
+
+const ChunkPackets& PacketPlan::chunk_of(std::uint64_t packet) const {
+  const auto after = std::upper_bound(chunks.begin(), chunks.end(), packet,
+                                      [](std::uint64_t p, const ChunkPackets& c) { return p < c.first; });
+  return *(after - 1);
+}
+
+PacketPlan plan_packets(const PassWork& pass, const GpuRates<double>& rates) {
+  const TrafficModel<double> model = model_traffic(shape_of(pass), pass, rates);
+  PacketPlan plan;
+  for (const PassCounters& c : pass.chunks) {
+    const ChunkCost<double> cost = chunk_cost(c, pass, model, rates);
+    ChunkPackets chunk;
+    chunk.subgroups = std::ceil(lanes_of(c) / rates.subgroup_size);
+    double slowest = 0.0;
+    for (const Unit u : {Unit::fe, Unit::ia, Unit::vs, Unit::setup, Unit::raster, Unit::hiz, Unit::zrop,
+                         Unit::crop, Unit::resolve, Unit::dram})
+      slowest = std::max(slowest, cost.ns[at(u)]);
+    chunk.first = plan.packets;
+    chunk.count =
+        static_cast<std::uint64_t>(std::max({1.0, chunk.subgroups, std::ceil(slowest / kPacketNsMax)}));
+    plan.packets += chunk.count;
+    for (std::size_t u = 0; u < kUnitCount; ++u)
+      chunk.service_ns[u] = cost.ns[u] / static_cast<double>(chunk.count);
+    chunk.resident = std::floor(resident_subgroups(c, rates));
+    if (chunk.subgroups > 0.0)
+      chunk.work =
+          subgroup_work(c, shader_pipes(c, rates), tex_pipe_ns(c, rates), model, rates, chunk.subgroups);
+    share_bytes(c, model, rates, chunk);
+    plan.chunks.push_back(chunk);
+  }
+  return plan;
+}
+
+}  // namespace hwsim

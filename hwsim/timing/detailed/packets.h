@@ -1,0 +1,38 @@
+#pragma once
+// A pass as a sequence of packets: a subgroup's worth of fragments with its share of everything that the
+// chunk makes the other units do. The trace has no finer order than chunks; within one, work is spread
+// evenly.
+#include <cstdint>
+#include <vector>
+
+#include "hwsim/timing/time_pass.h"
+
+namespace hwsim {
+
+/// What a subgroup does in the cores, all of them of one chunk alike.
+struct SubgroupWork {
+  double alu_ns = 0.0, sfu_ns = 0.0, memory_pipe_ns = 0.0, atomic_ns = 0.0, tex_ns = 0.0;  ///< of one core
+  double alu_chain_ns = 0.0;
+  double memory_phases = 0.0;
+  double l1_lines = 0.0;       ///< texture lines looked up in L1
+  double storage_lines = 0.0;  ///< read from L2
+};
+
+struct ChunkPackets {
+  std::uint64_t first = 0, count = 0;  ///< packets
+  double subgroups = 0.0;
+  double resident = 1.0;                        ///< subgroups of this kind that a core holds
+  std::array<double, kUnitCount> service_ns{};  ///< of one packet, units that all packets go through
+  SubgroupWork work;
+  StreamBytesOf<double> l2, direct;  ///< bytes of a packet that L2 is asked for, and that pass it by
+};
+
+struct PacketPlan {
+  std::vector<ChunkPackets> chunks;
+  std::uint64_t packets = 0;
+  const ChunkPackets& chunk_of(std::uint64_t packet) const;
+};
+
+PacketPlan plan_packets(const PassWork& pass, const GpuRates<double>& rates);
+
+}  // namespace hwsim

@@ -1,0 +1,229 @@
+// The event-driven engine: each unit against its closed form, and the queue engine where one unit limits.
+#include "hwsim/timing/detailed/detailed.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "hwsim/sample_gpu.h"
+
+namespace hwsim::test {
+namespace {
+
+double ratio_to_queue(const PassWork& pass, const GpuConfig& gpu) {
+  return time_one(pass, gpu, Engine::detailed).time_ns / time_one(pass, gpu, Engine::queue).time_ns;
+}
+
+PassWork one_unit(PassKind kind, void (*fill)(PassCounters&)) {
+  PassCounters c;
+  fill(c);
+  return repeated(kind, c, 64);
+}
+
+TEST(Detailed, EqualsTheQueueWhereOneUnitLimits) {
+  const GpuConfig gpu = sample_gpu();
+  const std::pair<const char*, PassWork> cases[] = {
+      {"fe", one_unit(PassKind::draw, [](PassCounters& c) { c.fe.draws = 100; })},
+      {"ia", one_unit(PassKind::draw, [](PassCounters& c) { c.stats.input_assembly_vertices = 30'000; })},
+      {"setup", one_unit(PassKind::draw, [](PassCounters& c) { c.setup.in_primitives = 10'000; })},
+      {"raster", one_unit(PassKind::draw, [](PassCounters& c) { c.raster.quads = 10'000; })},
+      {"hiz", one_unit(PassKind::draw, [](PassCounters& c) { c.hiz.tested_tiles = 10'000; })},
+      {"zrop", one_unit(PassKind::draw, [](PassCounters& c) { c.zrop.written_samples = 400'000; })},
+      {"crop", fill_pass(Format::rgba8_unorm, false, 32'768, 64)},
+      {"blend", fill_pass(Format::rgba16_float, true, 32'768, 64)},
+      {"resolve", one_unit(PassKind::resolve, [](PassCounters& c) { c.resolve.read_samples = 90'000; })},
+      {"alu", one_unit(PassKind::full_screen,
+                       [](PassCounters& c) {
+                         c.stats.fragment_shader_invocations = 32'000;
+                         c.shader.alu_issued_lane_ops_w32 = 32'000 * 200;
+                       })},
+      {"tex", one_unit(PassKind::full_screen,
+                       [](PassCounters& c) {
+                         c.stats.fragment_shader_invocations = 32'000;
+                         c.tex.requests = c.tex.bilinear_probes = 32'000 * 8;
+                         c.shader.memory_chain_lane_ops = 32'000;
+                       })},
+  };
+  for (const auto& [name, pass] : cases) EXPECT_NEAR(ratio_to_queue(pass, gpu), 1.0, 0.02) << name;
+}
+
+TEST(Detailed, L2AndDramReachTheirPeaks) {
+  GpuConfig gpu = sample_gpu();
+  PassCounters c;
+  c.mem.color_read_bytes = 1'000'000;
+  const PassWork pass = repeated(PassKind::resolve, c, 16);
+  gpu.l2_bytes_per_clk = 100.0;
+  EXPECT_NEAR(time_one(pass, gpu, Engine::detailed).time_ns / (16e6 / 100.0), 1.0, 0.02);
+  gpu.l2_bytes_per_clk = 5000.0;
+  gpu.dram_bandwidth_gb_s = 100.0;  // rows are read in order: the bus never waits
+  EXPECT_NEAR(time_one(pass, gpu, Engine::detailed).time_ns / (16e6 / 100.0), 1.0, 0.02);
+  EXPECT_NEAR(time_one(pass, gpu, Engine::detailed).dram_bytes.total_read(), 16e6, 16e6 * 0.01);
+}
+
+/// One subgroup alone: what it waits for adds up.
+TEST(Detailed, AnUnloadedSubgroupTakesTheSumOfItsLatencies) {
+  GpuConfig gpu = sample_gpu();
+  gpu.alu_latency_cycles = 10;
+  gpu.tex_latency_cycles = 100;
+  PassCounters c;
+  c.stats.fragment_shader_invocations = 32;
+  c.shader.alu_chain_lane_ops = 32 * 20;
+  c.shader.memory_chain_lane_ops = 32 * 3;
+  PassWork pass = repeated(PassKind::full_screen, c, 1);
+  EXPECT_NEAR(time_one(pass, gpu, Engine::detailed).time_ns, 20 * 10 + 3 * 100.0, 1e-6);
+  gpu.l2_latency_cycles = 300;
+  gpu.dram_latency_cycles = 700;
+  pass.chunks[0].shader.memory_chain_lane_ops = 32;
+  pass.chunks[0].mem.storage_read_bytes = 64;  // one line, never read before, in a closed row
+  EXPECT_NEAR(time_one(pass, gpu, Engine::detailed).time_ns, 20 * 10 + 700.0, 1.0);
+}
+
+TEST(Detailed, ResidencyHidesLatencyUpToTheGate) {
+  // Subgroups of 32 one-clock operations that then wait 100 clocks: 101 / 1 of them keep a core busy.
+  PassCounters c;
+  c.stats.fragment_shader_invocations = 32 * 10 * 800;
+  c.shader.alu_issued_lane_ops_w32 = c.stats.fragment_shader_invocations;
+  c.shader.memory_chain_lane_ops = c.stats.fragment_shader_invocations;
+  const PassWork pass = repeated(PassKind::full_screen, c, 1);
+  GpuConfig gpu = sample_gpu();
+  gpu.tex_latency_cycles = 100;
+  gpu.raster_px_per_engine_clk = gpu.export_px_per_clk = 1e5;
+  const auto time_with = [&](double residents) {
+    gpu.subgroups_per_core_max = residents;
+    return time_one(pass, gpu, Engine::detailed).time_ns;
+  };
+  for (const double residents : {101.0, 200.0}) {  // at the gate the pipe is always busy; beyond it, no gain
+    EXPECT_GE(time_with(residents), 800.0);
+    EXPECT_LE(time_with(residents), 800.0 + 100.0 + 40.0);
+  }
+  EXPECT_NEAR(time_with(50) / (800 * 101 / 50.0), 1.0, 0.05);  // below: Little's law
+  EXPECT_NEAR(time_with(1) / (800 * 101.0), 1.0, 0.02);
+}
+
+TEST(Detailed, RowsThatAreOpenedForEveryLineBoundTheBanks) {
+  GpuConfig gpu = sample_gpu();
+  gpu.dram_channels = 1;
+  gpu.dram_banks = 4;
+  gpu.dram_row_bytes = 1024;
+  gpu.dram_bandwidth_gb_s = 64.0;  // a line a nanosecond
+  gpu.dram_row_cycle_ns = 40.0;
+  Dram dram(gpu);
+  double done = 0.0;
+  for (std::uint64_t i = 0; i < 4000; ++i) done = std::max(done, dram.access(i * 16 * 7, false, 0.0));
+  EXPECT_EQ(dram.row_misses(), 4000u);
+  EXPECT_GT(done, 4000 * 40.0 / 4 * 0.9);  // a bank opens a row each 40 ns
+  Dram in_order(gpu);
+  for (std::uint64_t i = 0; i < 4000; ++i) done = in_order.access(i, false, 0.0);
+  EXPECT_EQ(in_order.row_misses(), 4000u / 16);
+  EXPECT_LT(done, 4000 * 1.1 + 500);
+}
+
+TEST(Detailed, TurningTheBusCostsTimeOnceAGroupOfWrites) {
+  GpuConfig gpu = sample_gpu();
+  gpu.dram_channels = 1;
+  gpu.dram_bandwidth_gb_s = 64.0;
+  gpu.dram_turn_ns = 10.0;
+  Dram dram(gpu);
+  for (std::uint64_t i = 0; i < 320; ++i) {
+    dram.access(i, false, 0.0);
+    dram.access(100'000 + i, true, 0.0);
+  }
+  EXPECT_NEAR(dram.busy_ns(), 640.0 + 10.0 * (10 + 9), 11.0);  // ten groups of 32 writes
+}
+
+TEST(Detailed, CachesKeepWhatTheCurvesSay) {
+  // Half of the requests are reuses within 100 KiB: they hit in an L2 of 256 KiB and miss in one of 32 KiB.
+  PassCounters c;
+  c.stats.fragment_shader_invocations = 3200;
+  c.shader.memory_chain_lane_ops = 3200;
+  c.mem.storage_read_bytes = 64 * 2000;
+  PassWork pass = repeated(PassKind::compute, c, 20);
+  MissCurve curve;
+  curve.requested_read_bytes = total(pass).mem.storage_read_bytes;
+  for (std::size_t k = 0; k < kCacheSizes; ++k)
+    curve.read_bytes[k] = k < 6 ? curve.requested_read_bytes : curve.requested_read_bytes / 2;
+  pass.reuse.apart[at(ReuseStream::storage)] = pass.reuse.shared[at(ReuseStream::storage)] = curve;
+  GpuConfig gpu = sample_gpu();
+  const auto moved = [&](double kib) {
+    gpu.l2_size_kib = kib;
+    return time_one(pass, gpu, Engine::detailed).dram_bytes.total_read() /
+           static_cast<double>(curve.requested_read_bytes);
+  };
+  EXPECT_NEAR(moved(512), 0.5, 0.05);
+  EXPECT_GT(moved(16), 0.9);
+}
+
+TEST(Detailed, IsTheSameEveryTimeAndItsInvariantsHold) {
+  WorkTrace trace;
+  trace.passes = {busy_pass(60), fill_pass(Format::rgba8_unorm, true, 4096, 64), PassWork{}};
+  GpuConfig gpu = sample_gpu();
+  gpu.dram_bandwidth_gb_s = 60.0;
+  const FrameTiming a = time_frame(trace, gpu, Engine::detailed),
+                    b = time_frame(trace, gpu, Engine::detailed);
+  EXPECT_EQ(a.time_ns, b.time_ns);
+  EXPECT_EQ(a.dram_bytes.read, b.dram_bytes.read);
+  for (const std::string& broken : check_timing(a, trace, gpu)) ADD_FAILURE() << broken;
+}
+
+/// Chunks whose cost changes along the pass.
+PassWork uneven_pass() {
+  PassWork pass;
+  pass.name = "uneven";
+  pass.kind = PassKind::full_screen;
+  for (std::uint64_t k = 0; k < 400; ++k) {
+    PassCounters c;
+    c.stats.fragment_shader_invocations = 9600;
+    c.shader.alu_issued_lane_ops_w32 = 9600 * (50 + 4 * ((k * 37) % 100));
+    c.shader.memory_chain_lane_ops = 9600 * 2;
+    c.tex.bilinear_probes = c.tex.requests = 9600 * 2;
+    pass.chunks.push_back(c);
+  }
+  return pass;
+}
+
+TEST(Detailed, ASampleHoldsTheWholeInItsInterval) {
+  const PassWork pass = uneven_pass();
+  GpuConfig gpu = sample_gpu();
+  gpu.subgroups_per_core_max = 24;
+  const double whole = time_one(pass, gpu, Engine::detailed).time_ns;
+  WorkTrace trace;
+  trace.passes = {pass};
+  for (const double ratio : {0.1, 0.3}) {
+    TimingOptions options;
+    options.detailed_sample_ratio = ratio;
+    const FrameTiming sampled = time_frame(trace, gpu, Engine::detailed, options);
+    ASSERT_TRUE(sampled.sampling_interval_ns.has_value());
+    EXPECT_LE((*sampled.sampling_interval_ns)[0], whole) << ratio;
+    EXPECT_GE((*sampled.sampling_interval_ns)[1], whole) << ratio;
+    EXPECT_NEAR(sampled.time_ns / whole, 1.0, 0.1) << ratio;
+  }
+}
+
+TEST(Detailed, AStallIsReportedWithItsPlace) {
+  TimingOptions options;
+  options.events_without_progress_max = 2;
+  WorkTrace trace;
+  trace.passes = {uneven_pass()};
+  try {
+    time_frame(trace, sample_gpu(), Engine::detailed, options);
+    ADD_FAILURE() << "expected a report";
+  } catch (const StallError& error) {
+    const std::string text = error.what();
+    for (const char* part : {"uneven", "packet", "crop", "dram", "resident"})
+      EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
+  }
+}
+
+TEST(Detailed, RunsAtLeastThreeHundredThousandFragmentsASecond) {
+  PassWork pass = busy_pass(64);
+  for (PassCounters& c : pass.chunks) c.stats.fragment_shader_invocations = 8000;
+  const auto start = std::chrono::steady_clock::now();
+  time_one(pass, sample_gpu(), Engine::detailed);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  RecordProperty("kfragments_a_second", static_cast<int>(64 * 8 / seconds));
+  EXPECT_GT(64 * 8000 / seconds, 1e5);  // 3e5 is the aim; sanitizers and busy machines get the rest
+}
+
+}  // namespace
+}  // namespace hwsim::test
