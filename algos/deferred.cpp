@@ -13,32 +13,34 @@ namespace hwsim::algos {
 namespace {
 using namespace pipeline;
 
-/// Layout gb_lauritzen: 16 bytes and depth a sample, lit color 8 bytes.
 struct GBuffer {
-  ImageId normal, albedo, gradient, depth, lit;
+  const GBufferLayout* layout = nullptr;
+  std::vector<ImageId> attachments;
+  ImageId depth, lit;
   int samples = 1;
 };
 
-GBuffer add_gbuffer(FrameGraph& graph, int samples) {
-  const auto image = [&](const char* name, Format format) {
-    return graph.add_image({name, format, graph.width(), graph.height(), samples});
-  };
+GBuffer add_gbuffer(FrameGraph& graph, const Parameters& parameters) {
   GBuffer g;
-  g.samples = samples;
-  g.normal = image("gbuffer_normal", Format::rgba16_float);
-  g.albedo = image("gbuffer_albedo", Format::rgba8_srgb);
-  g.gradient = image("gbuffer_gradient", Format::rg16_float);
-  g.depth = image("depth", samples > 1 ? Format::d32_float_s8 : Format::d32_float);
-  g.lit = image("lit", Format::rgba16_float);
+  g.layout = &gbuffer_layouts()[static_cast<std::size_t>(parameters.find("layout")->second)];
+  g.samples = static_cast<int>(parameters.find("samples")->second);
+  const auto image = [&](std::string_view name, Format format) {
+    return graph.add_image({std::string(name), format, graph.width(), graph.height(), g.samples});
+  };
+  for (const GBufferAttachment& attachment : g.layout->attachments)
+    g.attachments.push_back(image(attachment.name, attachment.format));
+  g.depth = image("depth", g.samples > 1 ? g.layout->depth_multisampled : g.layout->depth);
+  g.lit = image("lit", g.layout->lit);
   return g;
 }
 
-DrawBatch gbuffer_batch(const FrameParts& parts, const std::vector<DrawCall>& draws, bool alpha_test) {
+DrawBatch gbuffer_batch(const FrameParts& parts, const GBuffer& g, const std::vector<DrawCall>& draws,
+                        bool alpha_test) {
   DrawBatch batch;
   batch.state = opaque_state({});
   batch.vertex = parts.full_varyings ? &mesh_full_program() : &mesh_surface_program();
   batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{parts.clip_from_world});
-  batch.fragment = &gbuffer_program(parts.full_varyings, alpha_test);
+  batch.fragment = &gbuffer_program(g.layout->encoding, parts.full_varyings, alpha_test);
   batch.fragment_uniforms =
       std::make_shared<GBufferUniforms>(GBufferUniforms{parts.camera.view_from_world, parts.full_varyings});
   batch.draws = draws;
@@ -47,20 +49,29 @@ DrawBatch gbuffer_batch(const FrameParts& parts, const std::vector<DrawCall>& dr
 
 void add_gbuffer_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g) {
   // Normals are cleared to a valid code, so that no pass decodes a NaN (techniques 2.3).
-  graph.add_clear("clear", {g.normal, g.albedo, g.gradient, g.depth});
+  std::vector<ImageId> cleared = g.attachments;
+  cleared.push_back(g.depth);
+  graph.add_clear("clear", std::move(cleared));
   Pass& pass = graph.add_pass("gbuffer", PassKind::draw);
   pass.samples = g.samples;
-  pass.color = {g.normal, g.albedo, g.gradient};
+  pass.color = g.attachments;
   pass.depth = g.depth;
-  pass.batches.push_back(gbuffer_batch(parts, parts.draws.opaque, false));
-  if (!parts.draws.mask.empty()) pass.batches.push_back(gbuffer_batch(parts, parts.draws.mask, true));
+  pass.batches.push_back(gbuffer_batch(parts, g, parts.draws.opaque, false));
+  if (!parts.draws.mask.empty()) pass.batches.push_back(gbuffer_batch(parts, g, parts.draws.mask, true));
+}
+
+/// What lighting passes read of the G-buffer, in the order of their slots.
+std::vector<ImageId> lighting_inputs(const GBuffer& g) {
+  std::vector<ImageId> images = g.attachments;
+  if (depth_slot(g.layout->encoding) >= 0) images.push_back(g.depth);
+  return images;
 }
 
 std::shared_ptr<DeferredUniforms> make_uniforms(const FrameGraph& graph, const FrameParts& parts,
-                                                int samples) {
+                                                const GBuffer& g) {
   auto u = std::make_shared<DeferredUniforms>();
   u->lighting = parts.lighting;
-  if (parts.shadow_map) u->lighting.shadow_slot = kShadowSlot;
+  if (parts.shadow_map) u->lighting.shadow_slot = static_cast<int>(lighting_inputs(g).size());
   const float aspect = static_cast<float>(graph.width()) / static_cast<float>(graph.height());
   u->world_from_clip = glm::inverse(parts.clip_from_world);
   u->view_from_clip = glm::inverse(clip_from_view(parts.camera, aspect));
@@ -68,13 +79,13 @@ std::shared_ptr<DeferredUniforms> make_uniforms(const FrameGraph& graph, const F
   u->background = graph.scene().background;
   u->width = graph.width();
   u->height = graph.height();
-  u->samples = samples;
-  std::ranges::copy(standard_sample_positions(samples), u->positions.begin());
+  u->samples = g.samples;
+  std::ranges::copy(standard_sample_positions(g.samples), u->positions.begin());
   return u;
 }
 
 void bind_gbuffer(Pass& pass, const FrameParts& parts, const GBuffer& g) {
-  pass.sampled = {g.normal, g.albedo, g.gradient, g.depth};
+  pass.sampled = lighting_inputs(g);
   if (parts.shadow_map) pass.sampled.push_back(parts.shadow_map);
 }
 
@@ -83,7 +94,7 @@ Pass& add_light_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& 
   Pass& pass = graph.add_pass(name, PassKind::full_screen);
   pass.samples = g.samples;
   pass.color = {g.lit};
-  pass.fragment = &deferred_light_program();
+  pass.fragment = &deferred_light_program(g.layout->encoding);
   pass.uniforms = std::move(uniforms);
   bind_gbuffer(pass, parts, g);
   return pass;
@@ -106,7 +117,7 @@ void add_classify_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer
   pass.state.stencil.test = true;
   pass.state.stencil.reference = 1;
   pass.state.stencil.on_pass = StencilOp::replace;
-  pass.fragment = &classify_program();
+  pass.fragment = &classify_program(g.layout->encoding);
   pass.uniforms = std::move(uniforms);
   bind_gbuffer(pass, parts, g);
 }
@@ -114,7 +125,7 @@ void add_classify_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer
 void add_tile_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
                    std::shared_ptr<const void> uniforms) {
   Pass& pass = graph.add_pass("light_tiles", PassKind::compute);
-  const ComputeProgram& program = tile_light_program();
+  const ComputeProgram& program = tile_light_program(g.layout->encoding);
   pass.compute = &program;
   pass.groups_x = (graph.width() + program.group_width - 1) / program.group_width;
   pass.groups_y = (graph.height() + program.group_height - 1) / program.group_height;
@@ -146,11 +157,10 @@ void finish(FrameGraph& graph, const FrameParts& parts, const GBuffer& g) {
 FrameGraph build_deferred(const FrameRequest& request, const Parameters& parameters) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
-  const int samples = static_cast<int>(parameters.find("samples")->second);
-  const GBuffer g = add_gbuffer(graph, samples);
+  const GBuffer g = add_gbuffer(graph, parameters);
   add_gbuffer_pass(graph, parts, g);
-  Pass& light = add_light_pass(graph, parts, g, "light", make_uniforms(graph, parts, samples));
-  light.state.raster.sample_rate = samples > 1;
+  Pass& light = add_light_pass(graph, parts, g, "light", make_uniforms(graph, parts, g));
+  light.state.raster.sample_rate = g.samples > 1;
   finish(graph, parts, g);
   return graph;
 }
@@ -158,11 +168,12 @@ FrameGraph build_deferred(const FrameRequest& request, const Parameters& paramet
 FrameGraph build_simple_complex(const FrameRequest& request, const Parameters& parameters) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
-  const int samples = static_cast<int>(parameters.find("samples")->second);
-  const GBuffer g = add_gbuffer(graph, samples);
+  const GBuffer g = add_gbuffer(graph, parameters);
   add_gbuffer_pass(graph, parts, g);
-  const auto uniforms = make_uniforms(graph, parts, samples);
+  const auto uniforms = make_uniforms(graph, parts, g);
   uniforms->normal_dot_min = static_cast<float>(parameters.find("normal_dot_min")->second);
+  uniforms->z_scale = static_cast<float>(parameters.find("z_scale")->second);
+  uniforms->compare_all = parameters.find("compare_all")->second != 0;
   if (parameters.find("lighting")->second != 0) {
     add_tile_pass(graph, parts, g, uniforms);
   } else {
@@ -176,13 +187,17 @@ FrameGraph build_simple_complex(const FrameRequest& request, const Parameters& p
   return graph;
 }
 
-constexpr std::array<ParameterInfo, 1> kDeferred = {
-    ParameterInfo{"samples", 8, 1, 8, "samples a pixel: 1, 2, 4 or 8"}};
-constexpr std::array<ParameterInfo, 3> kSimpleComplex = {
-    ParameterInfo{"samples", 8, 2, 8, "samples a pixel: 2, 4 or 8"},
+constexpr ParameterInfo kLayout{"layout", 0, 0, 3, "what the G-buffer holds of a sample", kLayoutChoices};
+constexpr std::array<ParameterInfo, 2> kDeferred = {
+    ParameterInfo{"samples", 8, 1, 32, "samples a pixel: a power of two"}, kLayout};
+constexpr std::array<ParameterInfo, 6> kSimpleComplex = {
+    ParameterInfo{"samples", 8, 2, 32, "samples a pixel: a power of two"},
+    kLayout,
     ParameterInfo{"lighting", 0, 0, 1, "full-screen passes with stencil, or 16x16 compute tiles",
                   "stencil|compute"},
-    ParameterInfo{"normal_dot_min", 0.99, 0, 1, "normals further apart make a pixel complex (cosine)"}};
+    ParameterInfo{"normal_dot_min", 0.99, 0, 1, "normals further apart make a pixel complex (cosine)"},
+    ParameterInfo{"z_scale", 1, 0, 1000, "depth steps beyond this many slopes of a pixel make it complex"},
+    ParameterInfo{"compare_all", 0, 0, 1, "differing materials make a pixel complex, too", "off|on"}};
 
 constexpr TechniqueInfo kTechniques[] = {
     {"deferred", "multisampled G-buffer, every sample lit", kDeferred, build_deferred},

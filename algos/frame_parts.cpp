@@ -243,6 +243,26 @@ void add_blended(FrameGraph& graph, const FrameParts& parts, const std::string& 
   pass.batches.push_back(std::move(batch));
 }
 
+void add_blended_on_output(FrameGraph& graph, const FrameParts& parts, ImageId output) {
+  if (parts.draws.blend.empty()) return;
+  ForwardTarget target;
+  target.width = graph.width();
+  target.height = graph.height();
+  target.color = output;
+  target.depth = graph.add_image({"blended_depth", Format::d32_float, target.width, target.height, 1});
+  graph.add_clear("blended_clear", {target.depth});
+  Pass& pass = graph.add_pass("blended_depth", PassKind::draw);
+  pass.depth = target.depth;
+  const auto add = [&](const std::vector<DrawCall>& draws, bool alpha_test) {
+    if (draws.empty()) return;
+    pass.batches.push_back(depth_batch(parts.clip_from_world, draws, alpha_test));
+    pass.batches.back().state.raster.cull = CullMode::back;
+  };
+  add(parts.draws.opaque, false);
+  add(parts.draws.mask, true);
+  add_blended(graph, parts, "blended", target);
+}
+
 ImageId add_output(FrameGraph& graph) {
   const ImageId output = graph.add_image({"output", Format::rgba8_srgb, graph.width(), graph.height(), 1});
   graph.set_output(output);

@@ -50,6 +50,10 @@ void add_forward(pipeline::FrameGraph& graph, const FrameParts& parts, const std
 void add_blended(pipeline::FrameGraph& graph, const FrameParts& parts, const std::string& name,
                  const ForwardTarget& target);
 
+/// The same onto a finished image of one sample a pixel, when the frame's depth has more: opaque draws are
+/// repeated for a depth of its own. Adds nothing where nothing is blended.
+void add_blended_on_output(pipeline::FrameGraph& graph, const FrameParts& parts, pipeline::ImageId output);
+
 /// Depth-stencil image and color image in the frame's size times `scale`.
 ForwardTarget make_forward_target(pipeline::FrameGraph& graph, const std::string& name, int width, int height,
                                   int samples, Format color = Format::rgba8_srgb,

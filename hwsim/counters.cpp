@@ -19,21 +19,23 @@ constexpr bool is_bytes(std::string_view name) { return name.ends_with("_bytes")
 #define HWSIM_TEX_ENTRY(name, text) HWSIM_ENTRY_OF(tex, name, text)
 #define HWSIM_CROP_ENTRY(name, text) HWSIM_ENTRY_OF(crop, name, text)
 #define HWSIM_RESOLVE_ENTRY(name, text) HWSIM_ENTRY_OF(resolve, name, text)
+#define HWSIM_TECHNIQUE_ENTRY(name, text) HWSIM_ENTRY_OF(technique, name, text)
 #define HWSIM_MEM_ENTRY(name, text) HWSIM_ENTRY_OF(mem, name, text)
 
 // The order is that of HWSIM_COUNTER_UNITS; the assertion below and a test on ids keep them together.
-constexpr CounterInfo kCatalog[] = {HWSIM_STATS_COUNTERS(HWSIM_STATS_ENTRY)      //
-                                    HWSIM_FRONT_END_COUNTERS(HWSIM_FE_ENTRY)     //
-                                    HWSIM_VS_COUNTERS(HWSIM_VS_ENTRY)            //
-                                    HWSIM_SETUP_COUNTERS(HWSIM_SETUP_ENTRY)      //
-                                    HWSIM_RASTER_COUNTERS(HWSIM_RASTER_ENTRY)    //
-                                    HWSIM_HIZ_COUNTERS(HWSIM_HIZ_ENTRY)          //
-                                    HWSIM_ZROP_COUNTERS(HWSIM_ZROP_ENTRY)        //
-                                    HWSIM_PS_COUNTERS(HWSIM_PS_ENTRY)            //
-                                    HWSIM_SHADER_COUNTERS(HWSIM_SHADER_ENTRY)    //
-                                    HWSIM_TEX_COUNTERS(HWSIM_TEX_ENTRY)          //
-                                    HWSIM_CROP_COUNTERS(HWSIM_CROP_ENTRY)        //
-                                    HWSIM_RESOLVE_COUNTERS(HWSIM_RESOLVE_ENTRY)  //
+constexpr CounterInfo kCatalog[] = {HWSIM_STATS_COUNTERS(HWSIM_STATS_ENTRY)          //
+                                    HWSIM_FRONT_END_COUNTERS(HWSIM_FE_ENTRY)         //
+                                    HWSIM_VS_COUNTERS(HWSIM_VS_ENTRY)                //
+                                    HWSIM_SETUP_COUNTERS(HWSIM_SETUP_ENTRY)          //
+                                    HWSIM_RASTER_COUNTERS(HWSIM_RASTER_ENTRY)        //
+                                    HWSIM_HIZ_COUNTERS(HWSIM_HIZ_ENTRY)              //
+                                    HWSIM_ZROP_COUNTERS(HWSIM_ZROP_ENTRY)            //
+                                    HWSIM_PS_COUNTERS(HWSIM_PS_ENTRY)                //
+                                    HWSIM_SHADER_COUNTERS(HWSIM_SHADER_ENTRY)        //
+                                    HWSIM_TEX_COUNTERS(HWSIM_TEX_ENTRY)              //
+                                    HWSIM_CROP_COUNTERS(HWSIM_CROP_ENTRY)            //
+                                    HWSIM_RESOLVE_COUNTERS(HWSIM_RESOLVE_ENTRY)      //
+                                    HWSIM_TECHNIQUE_COUNTERS(HWSIM_TECHNIQUE_ENTRY)  //
                                     HWSIM_MEM_COUNTERS(HWSIM_MEM_ENTRY)};
 static_assert(std::size(kCatalog) == kCounterCount);
 
@@ -115,6 +117,16 @@ std::span<const CounterViolation> check_conservation(const PassCounters& c,
                 c.zrop.touched_tiles);
   check.at_most("crop.first_touched_tiles <= crop.touched_tiles", c.crop.first_touched_tiles,
                 c.crop.touched_tiles);
+  const TechniqueCounters& t = c.technique;
+  check.equal(
+      "technique.slots_emitted_first + _second + _third + _further = technique.slots_emitted_surfaces",
+      t.slots_emitted_first_surfaces + t.slots_emitted_second_surfaces + t.slots_emitted_third_surfaces +
+          t.slots_emitted_further_surfaces,
+      t.slots_emitted_surfaces);
+  check.at_most("technique.slots_emitted_second_surfaces <= technique.slots_emitted_first_surfaces",
+                t.slots_emitted_second_surfaces, t.slots_emitted_first_surfaces);
+  check.at_most("technique.merge_fallbacks_surfaces <= technique.slots_emitted_surfaces",
+                t.merge_fallbacks_surfaces, t.slots_emitted_surfaces);
   return check.found();
 }
 

@@ -128,6 +128,19 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(command_words, "32-bit words of the command stream") \
   X(cleared_tiles, "8x8 tiles cleared, all samples and targets")
 
+/// What techniques did, beyond what the units saw.
+#define HWSIM_TECHNIQUE_COUNTERS(X)                                                                \
+  X(lit_samples, "G-buffer samples, surfaces or aggregates that were lit, and pixels without any") \
+  X(slots_emitted_surfaces, "SBAA: surfaces that the analysis chose for a slot of the G-buffer")   \
+  X(slots_emitted_first_surfaces, "of these, for a pixel's first slot")                            \
+  X(slots_emitted_second_surfaces, "of these, for a pixel's second slot")                          \
+  X(slots_emitted_third_surfaces, "of these, for a pixel's third slot")                            \
+  X(slots_emitted_further_surfaces, "of these, for a pixel's fourth slot and beyond")              \
+  X(merge_fallbacks_surfaces,                                                                      \
+    "of these, single primitives: depths of the aligned samples lay in two groups")                \
+  X(slots_empty_surfaces, "of these, those that no fragment wrote")                                \
+  X(slot_conflicts_fragments, "SBAA: fragments that replaced another one's record in a slot")
+
 /// Bytes that units asked for, by stream; what of it DRAM moves is the timing engines' business.
 #define HWSIM_MEM_COUNTERS(X)                                             \
   X(depth_read_bytes, "depth and stencil read by tests")                  \
@@ -144,19 +157,20 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(other_write_bytes, "tile tables and other metadata written")
 
 /// All units: X(struct prefix, id, list)
-#define HWSIM_COUNTER_UNITS(U)                \
-  U(Stats, stats, HWSIM_STATS_COUNTERS)       \
-  U(FrontEnd, fe, HWSIM_FRONT_END_COUNTERS)   \
-  U(Vs, vs, HWSIM_VS_COUNTERS)                \
-  U(Setup, setup, HWSIM_SETUP_COUNTERS)       \
-  U(Raster, raster, HWSIM_RASTER_COUNTERS)    \
-  U(Hiz, hiz, HWSIM_HIZ_COUNTERS)             \
-  U(Zrop, zrop, HWSIM_ZROP_COUNTERS)          \
-  U(Ps, ps, HWSIM_PS_COUNTERS)                \
-  U(Shader, shader, HWSIM_SHADER_COUNTERS)    \
-  U(Tex, tex, HWSIM_TEX_COUNTERS)             \
-  U(Crop, crop, HWSIM_CROP_COUNTERS)          \
-  U(Resolve, resolve, HWSIM_RESOLVE_COUNTERS) \
+#define HWSIM_COUNTER_UNITS(U)                      \
+  U(Stats, stats, HWSIM_STATS_COUNTERS)             \
+  U(FrontEnd, fe, HWSIM_FRONT_END_COUNTERS)         \
+  U(Vs, vs, HWSIM_VS_COUNTERS)                      \
+  U(Setup, setup, HWSIM_SETUP_COUNTERS)             \
+  U(Raster, raster, HWSIM_RASTER_COUNTERS)          \
+  U(Hiz, hiz, HWSIM_HIZ_COUNTERS)                   \
+  U(Zrop, zrop, HWSIM_ZROP_COUNTERS)                \
+  U(Ps, ps, HWSIM_PS_COUNTERS)                      \
+  U(Shader, shader, HWSIM_SHADER_COUNTERS)          \
+  U(Tex, tex, HWSIM_TEX_COUNTERS)                   \
+  U(Crop, crop, HWSIM_CROP_COUNTERS)                \
+  U(Resolve, resolve, HWSIM_RESOLVE_COUNTERS)       \
+  U(Technique, technique, HWSIM_TECHNIQUE_COUNTERS) \
   U(Mem, mem, HWSIM_MEM_COUNTERS)
 
 #define HWSIM_FIELD(name, text) std::uint64_t name = 0;

@@ -5,7 +5,7 @@
 namespace hwsim {
 namespace {
 using enum RateClass;
-constexpr std::array<FormatInfo, 28> kFormats = {{
+constexpr std::array<FormatInfo, 29> kFormats = {{
     // name            ch bytes class       float  int    depth  stencil
     {"none", 0, 0, bits32, false, false, false, false},
     {"r8_unorm", 1, 1, bits32, false, false, false, false},
@@ -22,6 +22,7 @@ constexpr std::array<FormatInfo, 28> kFormats = {{
     {"r16_uint", 1, 2, bits32, false, true, false, false},
     {"rg16_float", 2, 4, float1_32, true, false, false, false},
     {"rg16_snorm", 2, 4, bits32, false, false, false, false},
+    {"rg16_uint", 2, 4, bits32, false, true, false, false},
     {"rgba16_float", 4, 8, half4_64, true, false, false, false},
     {"rgba16_unorm", 4, 8, half4_64, false, false, false, false},
     {"rgba16_snorm", 4, 8, half4_64, false, false, false, false},

@@ -23,6 +23,7 @@ enum class Format : std::uint8_t {
   r16_uint,
   rg16_float,
   rg16_snorm,
+  rg16_uint,
   rgba16_float,
   rgba16_unorm,
   rgba16_snorm,

@@ -2,28 +2,24 @@
 // G-buffer and deferred lighting (techniques 2).
 #include <array>
 
+#include "algos/gbuffer_layouts.h"
 #include "pipeline/graph/pipeline_state.h"
 #include "pipeline/shade/lighting.h"
 #include "pipeline/shade/program.h"
 
 namespace hwsim::algos {
 
-/// Image slots of lighting passes.
-enum GBufferSlot : int {
-  kNormalSlot = 0,
-  kAlbedoSlot = 1,
-  kGradientSlot = 2,
-  kDepthSlot = 3,
-  kShadowSlot = 4
-};
+/// Image slots of lighting passes: the layout's attachments in order, then depth where the encoding has no
+/// position. The shadow map follows them.
+constexpr int depth_slot(GBufferEncoding encoding) { return encoding == GBufferEncoding::record ? -1 : 3; }
 
 struct GBufferUniforms {
   glm::mat4 view_from_world{1.0f};
   bool full_varyings = false;
 };
-/// Colors: rgba16_float normal (octahedral) x, y, roughness, emissive luminance; rgba8_srgb base color and
-/// metallic; rg16_float view-space dz/dx, dz/dy.
-const pipeline::FragmentProgram& gbuffer_program(bool full_varyings, bool alpha_test);
+/// Writes the layout's attachments.
+const pipeline::FragmentProgram& gbuffer_program(GBufferEncoding encoding, bool full_varyings,
+                                                 bool alpha_test);
 
 struct DeferredUniforms {
   pipeline::LightingUniforms lighting;
@@ -34,14 +30,16 @@ struct DeferredUniforms {
   int width = 1, height = 1, samples = 1;
   std::array<pipeline::SamplePosition, 32> positions{};
   float normal_dot_min = 0.99f;
+  float z_scale = 1.0f;
+  bool compare_all = false;
 };
 
 /// Discards pixels whose samples are alike by Lauritzen's criteria (techniques 2.3).
-const pipeline::FragmentProgram& classify_program();
+const pipeline::FragmentProgram& classify_program(GBufferEncoding encoding);
 /// Lights sample 0 at pixel rate, or the invocation's sample at sample rate.
-const pipeline::FragmentProgram& deferred_light_program();
+const pipeline::FragmentProgram& deferred_light_program(GBufferEncoding encoding);
 /// 16x16 tiles: lights culled against the tile's depth bounds, sample 0 of each pixel lit, further samples of
 /// complex pixels redistributed over the group.
-const pipeline::ComputeProgram& tile_light_program();
+const pipeline::ComputeProgram& tile_light_program(GBufferEncoding encoding);
 
 }  // namespace hwsim::algos

@@ -21,25 +21,27 @@ enum TileBlock : int {
   kBoundsBlock = 1,  // depth of each sample, for the tile's bounds
   kCullBlock = 2,    // a light against the tile
   kFirstSampleBlock = 3,
-  kTileClassifyBlock = 4,
-  kOtherSampleBlock = 5,
-  kReplicateBlock = 10  // a simple pixel's color stored to a further sample
+  kTileClassifyBlock = 4,  // and the next one
+  kOtherSampleBlock = 10,
+  kReplicateBlock = 11  // a simple pixel's color stored to a further sample
 };
 
-template <class S, class Bounds>
+template <GBufferEncoding kEncoding, class S, class Bounds>
 void gather_bounds(S& s, const DeferredUniforms& u, Bounds& bounds) {
   using I = typename S::I;
   s.loop(kBoundsBlock, u.samples, s.valid(), [&](int i) HWY_ATTR {
-    const auto z = s.load_image(kDepthSlot, s.pixel_x(), s.pixel_y(), I(i)).x;
-    bounds.add(view_z(s, u, s.pixel_x(), s.pixel_y(), I(i)), s.valid() & (z < typename S::F(1.0f)));
+    typename S::M covered;
+    const auto z = view_z<kEncoding>(s, u, s.pixel_x(), s.pixel_y(), I(i), covered);
+    bounds.add(z, s.valid() & covered);
   });
 }
 
-template <class S>
+template <GBufferEncoding kEncoding, class S>
 lanes::Vec4<typename S::F> light_at(S& s, const DeferredUniforms& u,
                                     std::span<const pipeline::PointLight> points, typename S::I sample,
                                     typename S::F ox, typename S::F oy) {
-  const auto g = read_gbuffer(s, u, s.pixel_x(), s.pixel_y(), sample, ox, oy);
+  s.count(&TechniqueCounters::lit_samples, s.valid());
+  const auto g = read_gbuffer<kEncoding>(s, u, s.pixel_x(), s.pixel_y(), sample, ox, oy);
   return light_sample(s, u, points, g, s.valid());
 }
 
@@ -48,30 +50,31 @@ struct CountBounds {
 };
 
 /// One pass through every block, for the operation counts.
-inline pipeline::ComputeProgram describe_tile_light(void (*run)(pipeline::GroupBatch&, const void*)) {
+template <GBufferEncoding kEncoding>
+pipeline::ComputeProgram describe_tile_light(void (*run)(pipeline::GroupBatch&, const void*)) {
   lanes::CountFragment s;
   const DeferredUniforms u;
   const std::span points(u.lighting.points.data(), 1);
   CountBounds bounds;
-  gather_bounds(s, u, bounds);
+  gather_bounds<kEncoding>(s, u, bounds);
   using F = pipeline::CountF;
   using I = pipeline::CountI;
   s.branch(kCullBlock, s.valid(),
            [&]() HWY_ATTR {  // the light's sphere against the tile's box, and a slot in the list
              const auto p = lanes::broadcast<F>(u.lighting.points[0].position);
-             const auto v = s.load_image(kDepthSlot, s.pixel_x(), s.pixel_y(), I(0));
+             const auto v = s.load_image(0, s.pixel_x(), s.pixel_y(), I(0));
              const lanes::Vec3<F> d = {max(v.x - p.x, p.x - v.y), max(v.y - p.y, p.y - v.z),
                                        max(v.z - p.z, p.z - v.w)};
              (void)(dot(d, d) < v.x);
            });
   s.branch(kFirstSampleBlock, s.valid(), [&]() HWY_ATTR {
-    s.store_image(0, s.pixel_x(), s.pixel_y(), I(0), light_at(s, u, points, I(0), F(0.0f), F(0.0f)),
-                  s.valid());
+    s.store_image(0, s.pixel_x(), s.pixel_y(), I(0),
+                  light_at<kEncoding>(s, u, points, I(0), F(0.0f), F(0.0f)), s.valid());
   });
-  (void)is_complex(s, u, kTileClassifyBlock, s.pixel_x(), s.pixel_y());
+  (void)is_complex<kEncoding>(s, u, kTileClassifyBlock, s.pixel_x(), s.pixel_y());
   s.branch(kOtherSampleBlock, s.valid(), [&]() HWY_ATTR {
-    s.store_image(0, s.pixel_x(), s.pixel_y(), I(0), light_at(s, u, points, I(0), F(0.0f), F(0.0f)),
-                  s.valid());
+    s.store_image(0, s.pixel_x(), s.pixel_y(), I(0),
+                  light_at<kEncoding>(s, u, points, I(0), F(0.0f), F(0.0f)), s.valid());
   });
   s.branch(kReplicateBlock, s.valid(), [&]() HWY_ATTR { s.store_image(0, I(0), I(0), I(0), {}, s.valid()); });
   pipeline::ComputeProgram program;
@@ -103,6 +106,7 @@ struct LaneBounds {
   }
 };
 
+template <GBufferEncoding kEncoding>
 class TileLighter {
  public:
   TileLighter(pipeline::GroupBatch& group, const DeferredUniforms& u)
@@ -138,7 +142,7 @@ class TileLighter {
 
   void find_bounds() {
     LaneBounds bounds;
-    for_each_pixel([&](ComputeLanes& s) HWY_ATTR { gather_bounds(s, u_, bounds); });
+    for_each_pixel([&](ComputeLanes& s) HWY_ATTR { gather_bounds<kEncoding>(s, u_, bounds); });
     HWY_ALIGN float nearest[kVectorLanes], farthest[kVectorLanes];
     lanes::store(bounds.nearest, nearest);
     lanes::store(bounds.farthest, farthest);
@@ -199,11 +203,13 @@ class TileLighter {
     for_each_pixel([&](ComputeLanes& s) HWY_ATTR {
       lanes::Vec4<LaneF> color = {LaneF(0.0f), LaneF(0.0f), LaneF(0.0f), LaneF(0.0f)};
       s.branch(kFirstSampleBlock, s.valid(), [&]() HWY_ATTR {
-        color = light_at(s, u_, points_, LaneI(0), offset(u_.positions[0].x), offset(u_.positions[0].y));
+        color = light_at<kEncoding>(s, u_, points_, LaneI(0), offset(u_.positions[0].x),
+                                    offset(u_.positions[0].y));
         s.store_image(0, s.pixel_x(), s.pixel_y(), LaneI(0), color, s.valid());
       });
       if (u_.samples == 1) return;
-      const LaneM complex = is_complex(s, u_, kTileClassifyBlock, s.pixel_x(), s.pixel_y()) & s.valid();
+      const LaneM complex =
+          is_complex<kEncoding>(s, u_, kTileClassifyBlock, s.pixel_x(), s.pixel_y()) & s.valid();
       s.loop(kReplicateBlock, u_.samples - 1, !complex, [&](int i) HWY_ATTR {
         s.store_image(0, s.pixel_x(), s.pixel_y(), LaneI(i + 1), color, !complex);
       });
@@ -247,7 +253,8 @@ class TileLighter {
     ComputeLanes s(g_, first_lane, lanes::load(x), lanes::load(y), samples, lanes::load(valid) == LaneI(1));
     s.branch(kOtherSampleBlock, s.valid(), [&]() HWY_ATTR {
       s.store_image(0, s.pixel_x(), s.pixel_y(), samples,
-                    light_at(s, u_, points_, samples, lanes::load(ox), lanes::load(oy)), s.valid());
+                    light_at<kEncoding>(s, u_, points_, samples, lanes::load(ox), lanes::load(oy)),
+                    s.valid());
     });
   }
 
@@ -263,8 +270,20 @@ class TileLighter {
   Item work_[kTilePx * kTilePx * 31];
 };
 
-void run_tile_light(pipeline::GroupBatch& group, const void* uniforms) {
-  TileLighter(group, *static_cast<const DeferredUniforms*>(uniforms)).run();
+template <GBufferEncoding kEncoding>
+void run_tile(pipeline::GroupBatch& group, const void* uniforms) {
+  TileLighter<kEncoding>(group, *static_cast<const DeferredUniforms*>(uniforms)).run();
+}
+
+void run_tile_light(GBufferEncoding encoding, pipeline::GroupBatch& group, const void* uniforms) {
+  switch (encoding) {
+    case GBufferEncoding::gradients:
+      return run_tile<GBufferEncoding::gradients>(group, uniforms);
+    case GBufferEncoding::record:
+      return run_tile<GBufferEncoding::record>(group, uniforms);
+    case GBufferEncoding::compact:
+      return run_tile<GBufferEncoding::compact>(group, uniforms);
+  }
 }
 
 }  // namespace hwsim::algos::HWY_NAMESPACE
@@ -274,13 +293,26 @@ HWY_AFTER_NAMESPACE();
 namespace hwsim::algos {
 HWY_EXPORT(run_tile_light);
 
-const pipeline::ComputeProgram& tile_light_program() {
+template <GBufferEncoding kEncoding>
+const pipeline::ComputeProgram& program_of() {
   static const pipeline::ComputeProgram program =
-      HWY_NAMESPACE::describe_tile_light([](pipeline::GroupBatch& g, const void* u) {
+      HWY_NAMESPACE::describe_tile_light<kEncoding>([](pipeline::GroupBatch& g, const void* u) {
         HWY_DYNAMIC_DISPATCH(run_tile_light)
-        (g, u);
+        (kEncoding, g, u);
       });
   return program;
+}
+
+const pipeline::ComputeProgram& tile_light_program(GBufferEncoding encoding) {
+  switch (encoding) {
+    case GBufferEncoding::gradients:
+      return program_of<GBufferEncoding::gradients>();
+    case GBufferEncoding::record:
+      return program_of<GBufferEncoding::record>();
+    case GBufferEncoding::compact:
+      return program_of<GBufferEncoding::compact>();
+  }
+  return program_of<GBufferEncoding::gradients>();
 }
 
 }  // namespace hwsim::algos

@@ -73,7 +73,7 @@ class BinRunner : private BinShading {
     w_.batch.resources = &w_.resources;
     w_.batch.quad_count = 0;
     w_.batch.sample_index = -1;
-    ordered_ = w_.late_z;
+    ordered_ = w_.late_z || (w_.program != nullptr && w_.program->writes_storage);
     for (const BlendState& b : w_.state->blend) ordered_ = ordered_ || b.enabled || b.write_mask != 0xf;
   }
 

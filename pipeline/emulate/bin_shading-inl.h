@@ -253,6 +253,7 @@ class BinShading : protected BinColor {
     batch.image_texels = {};
     batch.image_read_bytes = 0;
     batch.storage_read_bytes = batch.storage_write_bytes = 0;
+    batch.counters = &w_.counters();
     w_.program->run(batch, w_.uniforms);
     w_.tracker.end_batch();
     PassCounters& n = w_.counters();
@@ -294,8 +295,8 @@ class BinShading : protected BinColor {
     if (w_.late_z) test_late_sample(s);
   }
 
-  bool ordered_ = false;  ///< quads on the same pixels must not share a batch: blending and late tests read
-                          ///< what they write
+  bool ordered_ = false;  ///< quads on the same pixels must not share a batch: blending, late tests and
+                          ///< storage see what they write, in submission order
 };
 
 }  // namespace hwsim::pipeline::HWY_NAMESPACE

@@ -416,7 +416,7 @@ class FrameRunner {
     parallel_for(groups, options_.jobs, [&](std::size_t group, int worker) {
       const auto w = static_cast<std::size_t>(worker);
       GroupBatch& batch = *batches[w];
-      std::fill(memory[w].begin(), memory[w].end(), 0);
+      if (!pass.compute->leaves_group_memory_zero) std::fill(memory[w].begin(), memory[w].end(), 0);
       workers_[w].tracker.start_bin(static_cast<std::uint32_t>(group));
       batch.group_x = static_cast<int>(group) % pass.groups_x;
       batch.group_y = static_cast<int>(group) / pass.groups_x;

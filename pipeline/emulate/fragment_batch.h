@@ -17,7 +17,7 @@ inline constexpr int kBatchLanes = 64;
 inline constexpr int kBatchQuads = 16;
 inline constexpr int kMaxColorTargets = 6;
 inline constexpr int kMaxImageSlots = 8;
-inline constexpr int kMaxBufferSlots = 4;
+inline constexpr int kMaxBufferSlots = 8;
 
 /// Material state of a draw, as shaders see it.
 struct MaterialView {
@@ -83,6 +83,7 @@ struct FragmentBatch {
 
   const MaterialView* material = nullptr;
   const ResourceView* resources = nullptr;
+  PassCounters* counters = nullptr;  ///< of the current chunk
 
   // Results
   alignas(64) float color[kMaxColorTargets][4][kBatchLanes];

@@ -34,6 +34,17 @@ class BufferAccess {
     return load(out);
   }
 
+  /// For counters alone: neither a load of the program nor traffic of the GPU.
+  LaneM holds_nonzero(LaneI index, LaneM mask) const {
+    HWY_ALIGN std::int32_t at[kVectorLanes], out[kVectorLanes] = {};
+    store(index, at);
+    for (std::uint32_t bits = mask_bits(mask); bits != 0; bits &= bits - 1) {
+      const int lane = __builtin_ctz(bits);
+      if (holds(at[lane])) out[lane] = words_[at[lane]] != 0 ? 1 : 0;
+    }
+    return load(out) > LaneI(0);
+  }
+
   void store_words(LaneI index, LaneI value, LaneM mask) const {
     HWY_ALIGN std::int32_t at[kVectorLanes], from[kVectorLanes];
     store(index, at);

@@ -39,6 +39,52 @@ class ComputeLanes {
     return load_texel(image, x, y, sample);
   }
 
+  /// As FragmentLanes'.
+  template <int kChannels>
+  void load_image_int(int slot, I x, I y, I sample, I (&channels)[kChannels]) {
+    const GpuImage& image = *group_.resources->images[static_cast<std::size_t>(slot)];
+    const auto lanes = static_cast<std::uint64_t>(__builtin_popcount(mask_bits(live_)));
+    TexelCounts texels;
+    texels.add(lanes, info(image.format).bytes);
+    charge_texels(texels, *group_.counters);
+    group_.counters->mem.texture_read_bytes += lanes * info(image.format).bytes;
+    track_texels(*group_.resources, slot, x, y, sample, mask_bits(live_), first_);
+    for (int c = 0; c < kChannels; ++c) channels[c] = load_texel_int(image, c, x, y, sample);
+  }
+  void count(std::uint64_t TechniqueCounters::*counter, M mask) {
+    group_.counters->technique.*counter +=
+        static_cast<std::uint64_t>(__builtin_popcount(mask_bits(mask & live_)));
+  }
+
+  /// Number of the invocation within its wave.
+  I lane_index() const {
+    HWY_ALIGN std::int32_t index[kVectorLanes];
+    for (int lane = 0; lane < kVectorLanes; ++lane) index[lane] = first_ + lane;
+    return load(index);
+  }
+  /// Byte `address` of the group's memory, lanes of `mask` only (others 0).
+  I load_group_byte(I address, M mask) const {
+    const std::uint8_t* bytes = group_bytes();
+    HWY_ALIGN std::int32_t at[kVectorLanes], out[kVectorLanes] = {};
+    store(address, at);
+    for (std::uint32_t bits = mask_bits(mask & live_); bits != 0; bits &= bits - 1) {
+      const int lane = __builtin_ctz(bits);
+      out[lane] = bytes[at[lane]];
+    }
+    return load(out);
+  }
+  void store_group_byte(I address, I value, M mask) {
+    for_each_group_byte(address, value, mask, [](std::uint8_t& byte, std::int32_t v) HWY_ATTR {
+      byte = static_cast<std::uint8_t>(v);
+    });
+  }
+  /// An addition by the group memory itself, without a result.
+  void add_group_byte(I address, I value, M mask) {
+    for_each_group_byte(address, value, mask, [](std::uint8_t& byte, std::int32_t v) HWY_ATTR {
+      byte = static_cast<std::uint8_t>(byte + v);
+    });
+  }
+
   /// Word `index` of the pass's storage buffer, lanes of `mask` only (others 0).
   I load_buffer(int slot, I index, M mask) {
     group_.counters->mem.storage_read_bytes += word_bytes(mask & valid_);
@@ -119,6 +165,18 @@ class ComputeLanes {
     group_.resources->tracker->use_if_sampled(
         (first_ + lane) / 4, ReuseStream::storage,
         buffer_line(kMaxBufferSlots + target, 0) + tile * bytes + texel * bytes / kLineBytes, 0, bytes);
+  }
+
+  std::uint8_t* group_bytes() const { return reinterpret_cast<std::uint8_t*>(group_.group_memory); }
+  template <class Body>
+  HWY_INLINE void for_each_group_byte(I address, I value, M mask, Body&& body) {
+    HWY_ALIGN std::int32_t at[kVectorLanes], from[kVectorLanes];
+    store(address, at);
+    store(value, from);
+    for (std::uint32_t bits = mask_bits(mask & live_); bits != 0; bits &= bits - 1) {
+      const int lane = __builtin_ctz(bits);
+      body(group_bytes()[at[lane]], from[lane]);
+    }
   }
 
   GroupBatch& group_;

@@ -37,6 +37,9 @@ class CountFragment {
     reads_coverage_ = true;
     return integer();
   }
+  I primitive_id() {  // the draw's base is added: an API's numbers restart with each draw
+    return I(made(OpKind::alu, made(OpKind::value)));
+  }
   F facing() { return F(made(OpKind::value)); }
   F attr(int) { return F(made(OpKind::interp)); }
   Vec3<F> attr3(int k) { return {attr(k), attr(k + 1), attr(k + 2)}; }
@@ -45,6 +48,17 @@ class CountFragment {
     return four(made(OpKind::texture, u, v));
   }
   Vec4<F> load_image(int, I x, I y, I sample) { return four(made(OpKind::fetch, x, y, sample)); }
+  template <int kChannels>
+  void load_image_int(int, I x, I y, I sample, I (&channels)[kChannels]) {
+    const CountValue request = made(OpKind::fetch, x, y, sample);
+    for (I& c : channels) c = I(made(OpKind::value, request));
+  }
+  void count(std::uint64_t TechniqueCounters::*, M) {}
+  M buffer_nonzero(int, I, M) const { return {}; }
+  I lane_index() { return integer(); }
+  I load_group_byte(I address, M mask) { return I(made(OpKind::group_memory, address, mask)); }
+  void store_group_byte(I address, I value, M mask) { made(OpKind::group_memory, address, value, mask); }
+  void add_group_byte(I address, I value, M mask) { made(OpKind::group_memory, address, value, mask); }
   int image_width(int) const { return 1; }
   int image_height(int) const { return 1; }
 

@@ -100,6 +100,11 @@ inline CountI to_int(CountF a) { return CountI(count_detail::alu(a)); }
 inline CountF to_float(CountI a) { return CountF(count_detail::alu(a)); }
 inline CountF bits_to_float(CountI a) { return CountF(CountValue(a)); }
 inline CountI float_to_bits(CountF a) { return CountI(CountValue(a)); }
+/// A shader that unpacks sRGB itself evaluates the curve: a power, and the line near zero.
+inline CountF lookup(const float*, CountI code) {
+  const CountF power = count_detail::sfu(count_detail::sfu(CountF(count_detail::alu(code))));
+  return CountF(count_detail::alu(count_detail::alu(code), power));
+}
 inline bool any(CountM) { return true; }
 
 }  // namespace hwsim::pipeline

@@ -28,15 +28,19 @@ HWY_INLINE void count_trip(BlockTrips& blocks, int block, int first_lane, LaneM 
 }
 
 /// Reads texels of the pass's image slots: shared by fragment and compute contexts. Coordinates are clamped.
-HWY_INLINE Vec4<LaneF> load_texel(const GpuImage& image, LaneI x, LaneI y, LaneI sample) {
+HWY_INLINE LaneI texel_index(const GpuImage& image, LaneI x, LaneI y, LaneI sample) {
   const LaneI cx = min(max(x, LaneI(0)), LaneI(image.width - 1)),
               cy = min(max(y, LaneI(0)), LaneI(image.height - 1));
   const LaneI block = shift_right<3>(cy) * LaneI(image.blocks_x) + shift_right<3>(cx);
   const LaneI lane = (cx & LaneI(1)) | shift_left<1>(cy & LaneI(1)) | shift_left<1>(cx & LaneI(2)) |
                      shift_left<2>(cy & LaneI(2)) | shift_left<2>(cx & LaneI(4)) |
                      shift_left<3>(cy & LaneI(4));
-  const LaneI first = block * LaneI(static_cast<std::int32_t>(image.block_words())) +
-                      shift_left<6>(sample * LaneI(image.words)) + lane;
+  return block * LaneI(static_cast<std::int32_t>(image.block_words())) +
+         shift_left<6>(sample * LaneI(image.words)) + lane;
+}
+
+HWY_INLINE Vec4<LaneF> load_texel(const GpuImage& image, LaneI x, LaneI y, LaneI sample) {
+  const LaneI first = texel_index(image, x, y, sample);
   LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
   const auto* texels = reinterpret_cast<const std::int32_t*>(image.texels.data());
   for (int word = 0; word < image.words; ++word)
@@ -61,6 +65,12 @@ HWY_INLINE void track_texels(const ResourceView& resources, int slot, LaneI x, L
       LaneI(static_cast<std::int32_t>(resources.image_first_line[static_cast<std::size_t>(slot)])) +
       (block * LaneI(image.samples) + sample) * LaneI(bytes) + shift_right<6>(lane * LaneI(bytes));
   track_lines(*resources.tracker, line, lanes, first_lane, static_cast<std::uint32_t>(bytes));
+}
+
+/// Channel `channel` of an integer format.
+HWY_INLINE LaneI load_texel_int(const GpuImage& image, int channel, LaneI x, LaneI y, LaneI sample) {
+  return gather(reinterpret_cast<const std::int32_t*>(image.texels.data()),
+                texel_index(image, x, y, sample) + LaneI(channel * kBlockLanes));
 }
 
 class FragmentLanes {
@@ -106,6 +116,14 @@ class FragmentLanes {
     return load(sign);
   }
 
+  /// Number of the primitive in the pass, over all of its draws, in submission order.
+  I primitive_id() const {
+    HWY_ALIGN std::int32_t id[kVectorLanes];
+    for (int lane = 0; lane < kVectorLanes; ++lane)
+      id[lane] = static_cast<std::int32_t>(batch_.primitive[static_cast<std::size_t>((first_ + lane) / 4)]);
+    return load(id);
+  }
+
   /// Filtered texture at attribute scalars (k, k + 1); level of detail from the derivatives at pixel centers.
   Vec4<F> sample_texture(const TextureView* texture, int k) {
     const TextureSampler<F, I, M> sampler(*texture, batch_.resources->tracker, live_, first_);
@@ -124,6 +142,16 @@ class FragmentLanes {
     track_texels(*batch_.resources, slot, x, y, sample, mask_bits(live_), first_);
     return load_texel(image, x, y, sample);
   }
+  /// As load_image, all channels of an integer format by one load.
+  template <int kChannels>
+  void load_image_int(int slot, I x, I y, I sample, I (&channels)[kChannels]) {
+    const GpuImage& image = *batch_.resources->images[static_cast<std::size_t>(slot)];
+    const auto lanes = static_cast<std::uint64_t>(__builtin_popcount(mask_bits(live_)));
+    batch_.image_texels.add(lanes, info(image.format).bytes);
+    batch_.image_read_bytes += lanes * info(image.format).bytes;
+    track_texels(*batch_.resources, slot, x, y, sample, mask_bits(live_), first_);
+    for (int c = 0; c < kChannels; ++c) channels[c] = load_texel_int(image, c, x, y, sample);
+  }
   /// Word `index` of the pass's storage buffer, lanes of `mask` only (others 0).
   I load_buffer(int slot, I index, M mask) {
     batch_.storage_read_bytes += word_bytes(mask & valid_);
@@ -138,6 +166,16 @@ class FragmentLanes {
     batch_.storage_read_bytes += word_bytes(mask & active_);
     batch_.storage_write_bytes += word_bytes(mask & active_);
     return BufferAccess(*batch_.resources, slot, first_).add_words(index, value, mask & active_);
+  }
+
+  /// Adds the lanes of `mask` to a counter: no operation of the program.
+  void count(std::uint64_t TechniqueCounters::*counter, M mask) {
+    batch_.counters->technique.*counter +=
+        static_cast<std::uint64_t>(__builtin_popcount(mask_bits(mask & active_ & live_)));
+  }
+  /// Lanes of `mask` whose word of a buffer is not 0, for counters alone.
+  M buffer_nonzero(int slot, I index, M mask) const {
+    return BufferAccess(*batch_.resources, slot, first_).holds_nonzero(index, mask & active_);
   }
 
   int image_width(int slot) const { return batch_.resources->images[static_cast<std::size_t>(slot)]->width; }

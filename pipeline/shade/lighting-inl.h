@@ -36,10 +36,14 @@ Vec3<F> broadcast(const glm::vec3& v) {
 /// base color and metallic-roughness to the models' parameters; alpha is kept above 0.03 (exponent below
 /// 2200).
 template <class F>
-void set_material(Vec3<F> base, F metallic, F roughness, Surface<F>& surface) {
+void set_roughness(F roughness, Surface<F>& surface) {
   const F alpha = max(roughness * roughness, F(0.03f));
   surface.alpha = alpha;
   surface.exponent = max(F(2.0f) / (alpha * alpha) - F(2.0f), F(0.0f));
+}
+template <class F>
+void set_material(Vec3<F> base, F metallic, F roughness, Surface<F>& surface) {
+  set_roughness(roughness, surface);
   surface.albedo = base * (F(1.0f) - metallic);
   const F dielectric = F(0.04f) * (F(1.0f) - metallic);
   surface.specular = base * metallic + Vec3<F>{dielectric, dielectric, dielectric};

@@ -13,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
-enum class MeshOutput { position, uv, surface, full };
+enum class MeshOutput { position, uv, normal, normal_uv, surface, full };
 
 /// S offers F, the attributes and matrices, and the outputs: VertexLanes below, or CountVertex.
 template <MeshOutput kOutput>
@@ -33,11 +33,16 @@ struct MeshVertexShader {
       s.varying(0, s.attribute(s.kAlphaUv, 0));
       s.varying(1, s.attribute(s.kAlphaUv, 1));
     }
-    if constexpr (kOutput == MeshOutput::surface || kOutput == MeshOutput::full) {
+    if constexpr (kOutput >= MeshOutput::normal) {
       const Vec3<F> n = s.attribute3(s.kNormal);
       for (int row = 0; row < 3; ++row) s.varying(V::kNormal + row, s.normal(row, n));
-      s.varying(V::kUv0, s.attribute(s.kUv, 0));
-      s.varying(V::kUv0 + 1, s.attribute(s.kUv, 1));
+    }
+    if constexpr (kOutput >= MeshOutput::normal_uv) {
+      constexpr int kSet = kOutput == MeshOutput::normal_uv ? S::kAlphaUv : S::kUv;
+      s.varying(V::kUv0, s.attribute(kSet, 0));
+      s.varying(V::kUv0 + 1, s.attribute(kSet, 1));
+    }
+    if constexpr (kOutput >= MeshOutput::surface) {
       s.varying(V::kPosition, world.x);
       s.varying(V::kPosition + 1, world.y);
       s.varying(V::kPosition + 2, world.z);
@@ -133,6 +138,8 @@ void run_mesh_vertex(VertexBatch& batch, const void* uniforms) {
 }
 void run_position(VertexBatch& b, const void* u) { run_mesh_vertex<MeshOutput::position>(b, u); }
 void run_uv(VertexBatch& b, const void* u) { run_mesh_vertex<MeshOutput::uv>(b, u); }
+void run_normal(VertexBatch& b, const void* u) { run_mesh_vertex<MeshOutput::normal>(b, u); }
+void run_normal_uv(VertexBatch& b, const void* u) { run_mesh_vertex<MeshOutput::normal_uv>(b, u); }
 void run_surface(VertexBatch& b, const void* u) { run_mesh_vertex<MeshOutput::surface>(b, u); }
 void run_full(VertexBatch& b, const void* u) { run_mesh_vertex<MeshOutput::full>(b, u); }
 
@@ -143,6 +150,8 @@ HWY_AFTER_NAMESPACE();
 namespace hwsim::pipeline {
 HWY_EXPORT(run_position);
 HWY_EXPORT(run_uv);
+HWY_EXPORT(run_normal);
+HWY_EXPORT(run_normal_uv);
 HWY_EXPORT(run_surface);
 HWY_EXPORT(run_full);
 
@@ -170,6 +179,22 @@ const VertexProgram& mesh_uv_program() {
   static const VertexProgram program = describe<MeshOutput::uv>("mesh_uv", [](VertexBatch& b, const void* u) {
     HWY_DYNAMIC_DISPATCH(run_uv)(b, u);
   });
+  return program;
+}
+const VertexProgram& mesh_normal_program() {
+  static const VertexProgram program =
+      describe<MeshOutput::normal>("mesh_normal", [](VertexBatch& b, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_normal)
+        (b, u);
+      });
+  return program;
+}
+const VertexProgram& mesh_normal_uv_program() {
+  static const VertexProgram program =
+      describe<MeshOutput::normal_uv>("mesh_normal_uv", [](VertexBatch& b, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_normal_uv)
+        (b, u);
+      });
   return program;
 }
 const VertexProgram& mesh_surface_program() {

@@ -15,7 +15,7 @@ struct SurfaceVaryings {
   static constexpr int kTangent = 8;   ///< 4: xyz world space, w handedness
   static constexpr int kColor = 12;    ///< 4
   static constexpr int kUv1 = 16;      ///< 2
-  static constexpr int kBasic = 8, kFull = 18;
+  static constexpr int kNormalOnly = 3, kNormalUv = 5, kBasic = 8, kFull = 18;
 };
 
 struct MeshVertexUniforms {
@@ -24,7 +24,10 @@ struct MeshVertexUniforms {
 
 const VertexProgram& mesh_position_program();  ///< no varyings: depth passes
 const VertexProgram& mesh_uv_program();        ///< the base color texture's, at 0: alpha-tested depth passes
-const VertexProgram& mesh_surface_program();   ///< SurfaceVaryings up to kBasic
-const VertexProgram& mesh_full_program();      ///< SurfaceVaryings up to kFull
+const VertexProgram& mesh_normal_program();    ///< SurfaceVaryings up to kNormalOnly
+/// Up to kNormalUv, with the base color texture's coordinates.
+const VertexProgram& mesh_normal_uv_program();
+const VertexProgram& mesh_surface_program();  ///< SurfaceVaryings up to kBasic
+const VertexProgram& mesh_full_program();     ///< SurfaceVaryings up to kFull
 
 }  // namespace hwsim::pipeline

@@ -33,6 +33,9 @@ void charge(OpKind kind, ShaderOps& ops) {
     case OpKind::atomic:
       ops.atomic += 1;
       return;
+    case OpKind::group_memory:
+      ops.group_memory += 1;
+      return;
     case OpKind::value:
     case OpKind::fused:
     case OpKind::output:
@@ -44,7 +47,8 @@ bool waits_for_memory(OpKind kind) {
   return kind == OpKind::texture || kind == OpKind::fetch || kind == OpKind::load || kind == OpKind::atomic;
 }
 bool runs_on_lanes(OpKind kind) {
-  return kind == OpKind::alu || kind == OpKind::sfu || kind == OpKind::interp;
+  // Group memory answers within a few instructions.
+  return kind == OpKind::alu || kind == OpKind::sfu || kind == OpKind::interp || kind == OpKind::group_memory;
 }
 
 }  // namespace

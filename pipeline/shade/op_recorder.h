@@ -23,6 +23,7 @@ enum class OpKind : std::uint8_t {
   load,
   store,
   atomic,
+  group_memory,
   output,  ///< uses values, costs nothing
 };
 

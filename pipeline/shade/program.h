@@ -65,6 +65,7 @@ struct ComputeProgram {
   int block_count = 1;
   int group_width = 16, group_height = 16;  ///< invocations
   int group_memory_bytes = 0;
+  bool leaves_group_memory_zero = false;  ///< clears what it used: no group finds another one's values
 };
 
 }  // namespace hwsim::pipeline
