@@ -55,14 +55,14 @@ class Pcg {
   std::uint64_t state_ = 0x853c49e6748fea9bull;
 };
 
-void add_point_lights(const FrameRequest& request, LightingUniforms& lighting) {
-  if (request.point_lights <= 0) return;
+void add_point_lights(const FrameRequest& request, int count, LightingUniforms& lighting) {
+  if (count <= 0) return;
   const SceneStats s = stats(*request.scene);
   const glm::vec3 extent = s.bounds_max - s.bounds_min;
   const float range = 0.15f * glm::length(extent);
   Pcg random;
   if (lighting.point_count == 0) lighting.points.clear();
-  for (int i = 0; i < request.point_lights; ++i) {
+  for (int i = 0; i < count; ++i) {
     PointLight light;
     for (int axis = 0; axis < 3; ++axis)
       light.position[axis] = s.bounds_min[axis] + extent[axis] * random.next();
@@ -73,6 +73,15 @@ void add_point_lights(const FrameRequest& request, LightingUniforms& lighting) {
     lighting.points.push_back(light);
   }
   lighting.point_count = static_cast<int>(lighting.points.size());
+}
+
+/// The first of a frame's lights: directional ones, then points.
+void keep_lights(int count, LightingUniforms& lighting) {
+  lighting.directional_count = std::min(lighting.directional_count, count);
+  lighting.point_count = std::min(lighting.point_count, count - lighting.directional_count);
+  // The vectors keep at least one element (LightingUniforms).
+  lighting.directional.resize(static_cast<std::size_t>(std::max(1, lighting.directional_count)));
+  lighting.points.resize(static_cast<std::size_t>(std::max(1, lighting.point_count)));
 }
 
 /// An orthographic view along the light that holds the whole scene.
@@ -189,7 +198,18 @@ LightingUniforms frame_lighting(const FrameRequest& request) {
   const Scene& scene = *request.scene;
   LightingUniforms lighting =
       make_lighting(scene, scene.cameras.at(static_cast<std::size_t>(request.camera)));
-  add_point_lights(request, lighting);
+  switch (request.lights) {
+    case LightProfile::scene:
+      add_point_lights(request, request.point_lights, lighting);
+      break;
+    case LightProfile::simple:
+      keep_lights(1, lighting);
+      break;
+    case LightProfile::complex:
+      add_point_lights(request, kComplexLights - lighting.directional_count - lighting.point_count, lighting);
+      keep_lights(kComplexLights, lighting);
+      break;
+  }
   return lighting;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 // A technique builds a frame graph and owns its shaders; it runs nothing.
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <span>
@@ -14,13 +15,19 @@ namespace hwsim::algos {
 
 enum class DeferredLighting { stencil, compute_tiles };
 
+/// Which lights a frame has: the scene's and those that the request adds; one, directional if there is one;
+/// or 16, seeded point lights where the scene has fewer (the two profiles of SBAA, section 5.2).
+enum class LightProfile : std::uint8_t { scene, simple, complex };
+inline constexpr int kComplexLights = 16;
+
 /// What every technique is given.
 struct FrameRequest {
   std::shared_ptr<const pipeline::Scene> scene;
   int width_px = 1280, height_px = 720;
   int camera = 0;        ///< index into Scene::cameras
   int point_lights = 0;  ///< 0..1024 seeded point lights added to those of the scene
-  bool shadows = true;   ///< a shadow map for the scene's shadow caster
+  LightProfile lights = LightProfile::scene;
+  bool shadows = true;  ///< a shadow map for the scene's shadow caster
   int shadow_map_px = 2048;
   GpuFeatures features;
   FunctionalConfig functional;

@@ -18,9 +18,10 @@ using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 std::string plan_key(const RunPlan& plan, int jobs) {
-  std::string key = fmt::format("{}|{}x{}|{}|{}|{}|{}", plan.view.scene, plan.view.resolution.width_px,
-                                plan.view.resolution.height_px, plan.view.point_lights,
-                                plan.reference_samples, plan.images, jobs);
+  std::string key =
+      fmt::format("{}|{}x{}|{}|{}|{}|{}|{}", plan.view.scene, plan.view.resolution.width_px,
+                  plan.view.resolution.height_px, plan.view.point_lights,
+                  light_profile_name(plan.view.lights), plan.reference_samples, plan.images, jobs);
   for (const auto& technique : plan.techniques) key += "|" + algos::technique_text(technique, true);
   for (const GpuConfig& gpu : plan.gpus) key += "|" + gpu.id;
   return key;

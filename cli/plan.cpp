@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "cli/argument_values.h"
@@ -18,6 +19,7 @@ namespace {
 
 struct SceneSettings {
   int point_lights = 0;
+  std::string lights = "scene";
   bool shadows = true;
   int shadow_map_px = 2048;
 };
@@ -25,6 +27,7 @@ template <class Visitor>
 void describe(Visitor& v, SceneSettings& s) {
   v.key({"point_lights", 0, 1024, kNoFlags, "seeded point lights added to those of the scene"},
         s.point_lights);
+  v.key({"lights", 0, 0, kNoFlags, "scene, simple (one light) or complex (16 lights)"}, s.lights);
   v.key({"shadows", 0, 1, kNoFlags, "a shadow map for the light that casts shadows"}, s.shadows);
   v.key({"shadow_map_px", 16, kMaxSidePx, kNoFlags, "side of the shadow map"}, s.shadow_map_px);
 }
@@ -49,6 +52,8 @@ void describe(Visitor& v, TimingSettings& s) {
   v.key({"detailed_sample", 1e-3, 1, kNoFlags, "engine detailed: part of a pass that is simulated"},
         s.detailed_sample);
 }
+
+constexpr std::array<std::string_view, 3> kLightProfiles = {"scene", "simple", "complex"};
 
 void append(std::vector<Diagnostic>& problems, const InputError& error) {
   problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
@@ -77,7 +82,8 @@ bool is_scene_file(const std::string& scene) {
 ViewPlan plan_view(const ViewOptions& options, const std::vector<Assignment>& sets, const ViewPlan& start,
                    std::vector<Diagnostic>& problems) {
   ViewPlan plan = start;
-  SceneSettings settings{start.point_lights, start.shadows, start.shadow_map_px};
+  SceneSettings settings{start.point_lights, std::string(light_profile_name(start.lights)), start.shadows,
+                         start.shadow_map_px};
   const std::vector<Key> keys = keys_of(settings);
   std::vector<Assignment> own, generator;
   for (const Assignment& set : sets) {
@@ -89,6 +95,13 @@ ViewPlan plan_view(const ViewOptions& options, const std::vector<Assignment>& se
   apply_settings("scene", keys, own, problems);
   plan.scene = with_parameters(plan.scene, generator);
   plan.point_lights = options.point_lights.value_or(settings.point_lights);
+  if (const auto profile = light_profile_from_name(settings.lights))
+    plan.lights = *profile;
+  else
+    problems.push_back(
+        problem("U003", "`scene.lights` is `" + settings.lights + "`, must be scene, simple or complex",
+                did_you_mean(settings.lights,
+                             std::vector<std::string>(kLightProfiles.begin(), kLightProfiles.end()))));
   plan.shadows = settings.shadows && !options.no_shadows;
   plan.shadow_map_px = settings.shadow_map_px;
   plan.resolution = options.resolution.value_or(start.resolution);
@@ -217,6 +230,16 @@ ViewPlan make_view_plan(const ViewOptions& options) {
   const ViewPlan plan = plan_view(options, sets, start, problems);
   if (!problems.empty()) throw InputError(problems);
   return plan;
+}
+
+std::optional<algos::LightProfile> light_profile_from_name(std::string_view name) {
+  const auto found = std::find(kLightProfiles.begin(), kLightProfiles.end(), name);
+  if (found == kLightProfiles.end()) return std::nullopt;
+  return static_cast<algos::LightProfile>(found - kLightProfiles.begin());
+}
+
+std::string_view light_profile_name(algos::LightProfile profile) {
+  return kLightProfiles[static_cast<std::size_t>(profile)];
 }
 
 RunPlan make_run_plan(const RunOptions& options) {

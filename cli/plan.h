@@ -20,6 +20,7 @@ struct ViewPlan {
   Resolution resolution;
   std::string camera = "0";
   int point_lights = 0;
+  algos::LightProfile lights = algos::LightProfile::scene;
   bool shadows = true;
   int shadow_map_px = 2048;
 };
@@ -35,6 +36,10 @@ struct RunPlan {
   bool images = true;
   std::vector<Assignment> overrides;
 };
+
+/// "scene", "simple" or "complex"; nothing for other names.
+std::optional<algos::LightProfile> light_profile_from_name(std::string_view name);
+std::string_view light_profile_name(algos::LightProfile profile);
 
 /// Throws InputError with every problem found.
 RunPlan make_run_plan(const RunOptions& options);

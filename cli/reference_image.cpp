@@ -14,9 +14,9 @@ namespace {
 
 /// Everything that the image depends on.
 std::string reference_key(const ViewPlan& view, const LoadedScene& loaded, int samples) {
-  return fmt::format("{}|{}|{}|{}x{}|{}|{}|{}", algos::kReferenceVersion, loaded.scene->content_hash,
+  return fmt::format("{}|{}|{}|{}x{}|{}|{}|{}|{}", algos::kReferenceVersion, loaded.scene->content_hash,
                      loaded.camera, view.resolution.width_px, view.resolution.height_px, view.point_lights,
-                     view.shadows, samples);
+                     light_profile_name(view.lights), view.shadows, samples);
 }
 
 }  // namespace

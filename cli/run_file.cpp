@@ -146,6 +146,13 @@ RunFile read_run_file(const std::string& path) {
   reader.take_count("height_px", file.view.resolution.height_px, 1, kMaxSidePx);
   reader.take_count("shadow_map_px", file.view.shadow_map_px, 16, kMaxSidePx);
   reader.take_count("point_lights", file.view.point_lights, 0, 1024);
+  std::string lights = "scene";
+  reader.take("lights", lights, "text");
+  if (const auto profile = light_profile_from_name(lights))
+    file.view.lights = *profile;
+  else
+    reader.add("C019", "lights is `" + lights + "`, must be scene, simple or complex",
+               table.get("lights") ? table.get("lights")->source() : table.source());
   reader.take_count("reference_samples", file.reference_samples, 0, 65536);
   if (file.view.scene.empty()) reader.add("C015", "`scene` is missing", table.source());
   reader.finish();
@@ -160,13 +167,15 @@ std::string run_file_text(const RunPlan& plan, const algos::TechniqueChoice& tec
   const bool is_path = view.scene.ends_with(".gltf") || view.scene.ends_with(".glb");
   return fmt::format(
       "schema = {}\nkind = \"run\"\nscene = {}\ntechnique = {}\ngpu = {}\nengine = {}\ndetailed_sample = {}\n"
-      "width_px = {}\nheight_px = {}\ncamera = {}\npoint_lights = {}\nshadows = {}\nshadow_map_px = {}\n"
+      "width_px = {}\nheight_px = {}\ncamera = {}\npoint_lights = {}\nlights = {}\nshadows = "
+      "{}\nshadow_map_px = {}\n"
       "emulator_skip = {}\nreference_samples = {}\n",
       kSchema, quoted(is_path ? fs::absolute(view.scene).lexically_normal().string() : view.scene),
       quoted(algos::technique_text(technique, true)), quoted(gpu_file),
       quoted(std::string(engine_name(plan.engine))), plan.timing.detailed_sample_ratio,
       view.resolution.width_px, view.resolution.height_px, quoted(view.camera), view.point_lights,
-      view.shadows, view.shadow_map_px, quoted(skip_text(plan.skip)), plan.reference_samples);
+      quoted(std::string(light_profile_name(view.lights))), view.shadows, view.shadow_map_px,
+      quoted(skip_text(plan.skip)), plan.reference_samples);
 }
 
 }  // namespace hwsim::cli

@@ -47,6 +47,7 @@ algos::FrameRequest frame_request(const ViewPlan& view, const LoadedScene& loade
   request.height_px = view.resolution.height_px;
   request.camera = loaded.camera;
   request.point_lights = view.point_lights;
+  request.lights = view.lights;
   request.shadows = view.shadows;
   request.shadow_map_px = view.shadow_map_px;
   return request;

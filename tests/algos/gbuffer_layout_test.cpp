@@ -1,0 +1,123 @@
+// Footprints of deferred frames against SBAA's Table 2 and the layouts' own bytes, and what the layouts keep.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "algos/gbuffer_layouts.h"
+#include "algos/sbaa_frames.h"
+
+namespace hwsim::test {
+namespace {
+
+double allocated_mib(const std::string& technique, int width, int height) {
+  const auto scene = share(clip_space_scene({}, {}));
+  const auto graph = build_graph(technique, scene, width, height);
+  return static_cast<double>(pipeline::compile(graph, features_for(32), FunctionalConfig{}).allocated_bytes) /
+         (1024.0 * 1024.0);
+}
+
+std::string printed(double mib) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.1f", mib);
+  return text;
+}
+
+// SBAA, Table 2, row MBytes: 1280x720, to the printed digit.
+TEST(Memory, IsThatOfThePublishedTable) {
+  const std::pair<const char*, const char*> cells[] = {
+      {"deferred_simple_complex:layout=gb_sbaa40,samples=4", "144.1"},
+      {"sbaa_top:n=2,msaa=4", "80.9"},
+      {"sbaa_merge:n=2,msaa=4", "94.9"},
+      {"deferred_simple_complex:layout=gb_sbaa40,samples=8", "284.8"},
+      {"sbaa_top:n=2,msaa=8", "98.4"},
+      {"sbaa_top:n=3,msaa=8", "128.3"},
+      {"sbaa_merge:n=2,msaa=8", "126.6"},
+      {"sbaa_merge:n=3,msaa=8", "156.4"}};
+  for (const auto& [technique, mbytes] : cells)
+    EXPECT_EQ(printed(allocated_mib(technique, 1280, 720)), mbytes) << technique;
+}
+
+TEST(Memory, OfAPixelIsThatOfTheLayout) {
+  const auto bytes = [](const std::string& technique) {
+    return allocated_mib(technique, 256, 256) * 1024 * 1024 / (256 * 256);
+  };
+  for (const int samples : {2, 4, 8, 16, 32}) {
+    const std::string n = std::to_string(samples);
+    EXPECT_EQ(bytes("deferred:layout=gb_sbaa40,samples=" + n), 40 * samples + 4);
+    EXPECT_EQ(bytes("deferred:layout=gb_lauritzen,samples=" + n), (16 + 8 + 8) * samples + 4);
+    EXPECT_EQ(bytes("deferred:layout=gb_20,samples=" + n), (20 + 4) * samples + 4);
+    EXPECT_EQ(bytes("deferred:layout=gb_agaa16,samples=" + n), (16 + 4) * samples + 4);
+    for (const int slots : {1, 2}) {
+      const int surface = samples > 8 ? 4 : 2;
+      EXPECT_EQ(bytes("sbaa_top:n=" + std::to_string(slots) + ",msaa=" + n),
+                5 * samples + (32 + surface) * slots + 4);
+      EXPECT_EQ(bytes("sbaa_merge:n=" + std::to_string(slots) + ",msaa=" + n),
+                9 * samples + (32 + surface) * slots + 4);
+    }
+  }
+  EXPECT_EQ(bytes("deferred:layout=gb_lauritzen,samples=1"), 16 + 4 + 8 + 4);
+}
+
+TEST(GBufferLayout, HasTheBytesOfItsName) {
+  const int expected[] = {24, 36, 16, 20};  // without lit color; lauritzen: depth with stencil in 8 bytes
+  for (std::size_t i = 0; i < algos::gbuffer_layouts().size(); ++i)
+    EXPECT_EQ(algos::gbuffer_sample_bytes(algos::gbuffer_layouts()[i], 8), expected[i])
+        << algos::gbuffer_layouts()[i].id;
+  std::string choices;
+  for (const algos::GBufferLayout& layout : algos::gbuffer_layouts())
+    choices += (choices.empty() ? "" : "|") + std::string(layout.id);
+  EXPECT_EQ(choices, algos::kLayoutChoices);
+}
+
+// All layouts light the same surfaces; what they round differs by little.
+TEST(GBufferLayout, ChangesTheImageLittle) {
+  const auto scene = generated_scene("sponza_hall");
+  const auto reference = run_graph(build_graph("deferred", scene, 160, 90, true)).color;
+  for (const char* layout : {"gb_sbaa40", "gb_agaa16", "gb_20"}) {
+    for (const char* technique :
+         {"deferred:layout=", "deferred_simple_complex:compare_all=on,normal_dot_min=0.999999,layout=",
+          "deferred_simple_complex:lighting=compute,layout="}) {
+      const auto image = run_graph(build_graph(std::string(technique) + layout, scene, 160, 90, true)).color;
+      double sum = 0.0;
+      for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        sum += code_difference(image.pixels[i], reference.pixels[i]);
+      EXPECT_LT(sum / static_cast<double>(image.pixels.size()), 0.6) << technique << layout;
+    }
+  }
+}
+
+std::uint64_t lit_samples(const std::string& technique, std::shared_ptr<const pipeline::Scene> scene) {
+  return total(run_graph(build_graph(technique, std::move(scene), 160, 90)).trace).technique.lit_samples;
+}
+
+// A tilted wall that fills the screen has no complex pixel by any layout's criteria (techniques 2.3).
+TEST(SimpleComplex, FindsAWallSimpleInEveryLayout) {
+  std::vector<glm::vec3> corners;
+  add_grid(corners, {-60, -40, -31}, {120, 0, 17}, {0, 80, 6}, 1);
+  const auto scene = share(faceted_scene(corners));
+  for (const algos::GBufferLayout& layout : algos::gbuffer_layouts())
+    for (const char* lighting : {"stencil", "compute"})
+      EXPECT_EQ(lit_samples("deferred_simple_complex:lighting=" + std::string(lighting) +
+                                ",layout=" + std::string(layout.id),
+                            scene),
+                160u * 90u)
+          << layout.id << ", " << lighting;
+}
+
+// Shaded = pixels + (N - 1) complex ones; stricter criteria find more of them.
+TEST(SimpleComplex, CriteriaDecideWhatIsShaded) {
+  const auto scene = generated_scene("sponza_hall");
+  const auto lit = [&](const std::string& more) {
+    return lit_samples("deferred_simple_complex:layout=gb_sbaa40" + more, scene);
+  };
+  const std::uint64_t plain = lit(""), strict = lit(",normal_dot_min=0.999999,compare_all=on");
+  EXPECT_EQ((plain - 160 * 90) % 7, 0u);
+  EXPECT_EQ(plain, lit(",lighting=compute"));
+  EXPECT_GT(strict, plain);
+  EXPECT_GT(lit(",compare_all=on"), plain);
+  EXPECT_GT(plain, lit(",z_scale=1000"));
+  EXPECT_EQ(lit_samples("deferred:layout=gb_sbaa40", scene), 160u * 90u * 8u);
+}
+
+}  // namespace
+}  // namespace hwsim::test
