@@ -128,7 +128,7 @@ void Run::record(const PointResult& point) {
   write_point_files(alone ? directory_->partial().string() : directory_->path(point_folder(point)), point,
                     plan_, scene, reference_ ? &*reference_ : nullptr);
   if (!point.emulation_reused) {
-    fragments_ += shaded_samples(point.emulation->trace);
+    fragments_ += shader_invocations(point.emulation->trace);
     emulation_s_ += point.emulation->wall_s;
   }
   rows_.push_back(summary_row(point));

@@ -43,6 +43,7 @@ Json frame_json(const PointResult& point) {
     json["interval_ms"] = {(*timing.interval_ns)[0] / kNsPerMs, (*timing.interval_ns)[1] / kNsPerMs};
   json["support"] = support_name(timing.support);
   json["memory_mib"] = static_cast<double>(point.emulation->trace.peak_memory_bytes) / kBytesPerMib;
+  json["allocated_mib"] = static_cast<double>(point.emulation->trace.allocated_memory_bytes) / kBytesPerMib;
   json["dram_mb"] = dram_bytes(timing.dram_bytes) / kBytesPerMb;
   json["shaded_samples"] = shaded_samples(point.emulation->trace);
   return json;
@@ -85,7 +86,9 @@ std::string band_of(double sol_ratio) {  // the bands of the performance-triage 
 
 }  // namespace
 
-std::uint64_t shaded_samples(const WorkTrace& trace) {
+std::uint64_t shaded_samples(const WorkTrace& trace) { return total(trace).technique.lit_samples; }
+
+std::uint64_t shader_invocations(const WorkTrace& trace) {
   const PassCounters sum = total(trace);
   return sum.ps.invocations + sum.stats.compute_shader_invocations;
 }

@@ -30,8 +30,10 @@ std::string headline_time(const FrameTiming& timing);
 /// Two sentences: the time with its interval, and the pass and unit that it goes to.
 std::string headline(const PointResult& point, const RunPlan& plan, const std::string& scene_name);
 
-/// Invocations of fragment shaders for fragments and of compute shaders, all passes.
+/// What was lit: fragments, or the samples, surfaces and aggregates of deferred techniques.
 std::uint64_t shaded_samples(const WorkTrace& trace);
+/// Invocations of fragment shaders for fragments and of compute shaders, all passes.
+std::uint64_t shader_invocations(const WorkTrace& trace);
 
 /// Trace Event JSON for Perfetto: one track a unit, slices for passes, counter tracks.
 std::string trace_event_json(const PointResult& point);

@@ -46,7 +46,8 @@ struct WorkTrace {
   std::string technique;
   int width_px = 0;
   int height_px = 0;
-  std::uint64_t peak_memory_bytes = 0;  ///< of attachments and buffers, by lifetime
+  std::uint64_t peak_memory_bytes = 0;       ///< of attachments and buffers, by lifetime
+  std::uint64_t allocated_memory_bytes = 0;  ///< of all of them, none in another one's memory
   std::vector<PassWork> passes;
 };
 

@@ -492,6 +492,7 @@ Emulation emulate(const FrameGraph& graph, const GpuFeatures& features, const Fu
   result.trace.width_px = graph.width();
   result.trace.height_px = graph.height();
   result.trace.peak_memory_bytes = compiled.peak_bytes;
+  result.trace.allocated_memory_bytes = compiled.allocated_bytes;
   FrameRunner(graph, compiled, functional, options).run(result);
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

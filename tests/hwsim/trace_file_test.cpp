@@ -21,6 +21,7 @@ WorkTrace sample_trace(std::size_t chunks) {
   trace.width_px = 1280;
   trace.height_px = 720;
   trace.peak_memory_bytes = 123'456'789'012;
+  trace.allocated_memory_bytes = 223'456'789'012;
   trace.passes = {busy_pass(chunks), fill_pass(Format::rgba16_float, true, 4096, 3), PassWork{}};
   trace.passes[0].sample_rate = trace.passes[0].barrier_before = true;
   trace.passes[2].kind = PassKind::clear;
