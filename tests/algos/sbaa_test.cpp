@@ -128,7 +128,9 @@ void compare_analysis(const std::string& technique, const AnalysisRules& rules, 
       ASSERT_LE(sum, samples);
       ASSERT_EQ(background,
                 std::count_if(pixel.begin(), pixel.end(), [](const Sample& s) { return !s.drawn; }));
-      if (rules.slots == samples) ASSERT_EQ(sum, samples);
+      if (rules.slots == samples) {
+        ASSERT_EQ(sum, samples);
+      }
     }
   }
   EXPECT_EQ(wrong, 0u);
