@@ -75,7 +75,8 @@ SbaaSurfaces describe_surfaces(const FrameGraph& graph, const SbaaOptions& o) {
 SbaaImages add_images(FrameGraph& graph, const SbaaOptions& o) {
   const int width = graph.width(), height = graph.height();
   SbaaImages images;
-  images.depth = graph.add_image({"depth", Format::d32_float, width, height, o.samples});
+  // The format of gb_sbaa40, so that both see the same samples.
+  images.depth = graph.add_image({"depth", Format::d24_unorm_s8, width, height, o.samples});
   const Format number = o.sample == SbaaSample::packed ? Format::rgba8_uint : id_format(o.id_bits);
   images.id = graph.add_image({"primitive_id", number, width, height, o.samples});
   if (o.sample == SbaaSample::id_and_normal)
