@@ -72,12 +72,12 @@ TEST(GBufferLayout, HasTheBytesOfItsName) {
 // All layouts light the same surfaces; what they round differs by little.
 TEST(GBufferLayout, ChangesTheImageLittle) {
   const auto scene = generated_scene("sponza_hall");
-  const auto reference = run_graph(build_graph("deferred", scene, 160, 90, true)).color;
+  const auto reference = run_graph(build_graph("deferred", scene, 96, 54, true)).color;
   for (const char* layout : {"gb_sbaa40", "gb_agaa16", "gb_20"}) {
     for (const char* technique :
          {"deferred:layout=", "deferred_simple_complex:compare_all=on,normal_dot_min=0.999999,layout=",
           "deferred_simple_complex:lighting=compute,layout="}) {
-      const auto image = run_graph(build_graph(std::string(technique) + layout, scene, 160, 90, true)).color;
+      const auto image = run_graph(build_graph(std::string(technique) + layout, scene, 96, 54, true)).color;
       double sum = 0.0;
       for (std::size_t i = 0; i < image.pixels.size(); ++i)
         sum += code_difference(image.pixels[i], reference.pixels[i]);
