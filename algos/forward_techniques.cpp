@@ -62,6 +62,18 @@ void build_multisampled(FrameGraph& graph, const FrameParts& parts, int samples,
   graph.add_resolve("resolve", target.color, add_output(graph));
 }
 
+// Layers of eight samples under shifted viewports (techniques 1.4); no resolve mixes layers, so a shader
+// does.
+void build_multicast(FrameGraph& graph, const FrameParts& parts, int samples, bool centroid,
+                     const MulticastPattern& layers) {
+  ForwardTarget target = make_forward_target(graph, "multisampled", graph.width(), graph.height(), samples,
+                                             Format::rgba8_srgb, Format::d24_unorm_s8, layers);
+  target.centroid = centroid;
+  add_forward(graph, parts, "", target);
+  add_full_screen(graph, "merge", target.color, add_output(graph), merge_program(),
+                  std::make_shared<MergeUniforms>(MergeUniforms{samples}));
+}
+
 int integer(const Parameters& parameters, std::string_view name) {
   return static_cast<int>(parameters.find(name)->second);
 }
@@ -100,8 +112,16 @@ FrameGraph build_ssaa(const FrameRequest& request, const Parameters& parameters)
 FrameGraph build_msaa(const FrameRequest& request, const Parameters& parameters) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
-  build_multisampled(graph, parts, integer(parameters, "samples"), integer(parameters, "centroid") != 0,
-                     false);
+  const int samples = integer(parameters, "samples");
+  const bool centroid = integer(parameters, "centroid") != 0;
+  const auto emulate = parameters.find("emulate");
+  const MulticastPattern layers = emulate == parameters.end()
+                                      ? MulticastPattern{}
+                                      : multicast_layers(request, samples, static_cast<int>(emulate->second));
+  if (layers.viewports.empty())
+    build_multisampled(graph, parts, samples, centroid, false);
+  else
+    build_multicast(graph, parts, samples, centroid, layers);
   return graph;
 }
 
@@ -116,10 +136,16 @@ constexpr ParameterInfo kVariant{"variant",
 constexpr std::array<ParameterInfo, 2> msaa(double samples) {
   return {ParameterInfo{"samples", samples, samples, samples, "samples a pixel"}, kCentroid};
 }
+constexpr std::array<ParameterInfo, 3> msaa_beyond_8(double samples) {
+  return {ParameterInfo{"samples", samples, samples, samples, "samples a pixel"}, kCentroid,
+          ParameterInfo{"emulate", 0, 0, 2, "layers of 8 samples, by viewport multicast, or native samples",
+                        kEmulateChoices}};
+}
 constexpr std::array<ParameterInfo, 2> ssaa(double samples) {
   return {ParameterInfo{"samples", samples, samples, samples, "shaded samples a pixel"}, kVariant};
 }
 constexpr auto kMsaa2 = msaa(2), kMsaa4 = msaa(4), kMsaa8 = msaa(8);
+constexpr auto kMsaa16 = msaa_beyond_8(16), kMsaa32 = msaa_beyond_8(32);
 constexpr auto kSsaa4 = ssaa(4), kSsaa16 = ssaa(16), kSsaa64 = ssaa(64);
 
 constexpr TechniqueInfo kTechniques[] = {
@@ -130,6 +156,8 @@ constexpr TechniqueInfo kTechniques[] = {
     {"msaa2x", "multisampling, hardware resolve", kMsaa2, build_msaa},
     {"msaa4x", "multisampling, hardware resolve", kMsaa4, build_msaa},
     {"msaa8x", "multisampling, hardware resolve", kMsaa8, build_msaa},
+    {"msaa16x", "multisampling, native or as two shifted layers of 8 samples", kMsaa16, build_msaa},
+    {"msaa32x", "multisampling, native or as four shifted layers of 8 samples", kMsaa32, build_msaa},
 };
 
 }  // namespace

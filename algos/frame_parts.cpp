@@ -166,6 +166,7 @@ Pass& add_target_pass(FrameGraph& graph, const FrameParts& parts, const std::str
   pass.width = target.width;
   pass.height = target.height;
   pass.samples = target.samples;
+  pass.viewports = target.layers.viewports;
   pass.color = {target.color};
   pass.depth = target.depth;
   if (parts.shadow_map) pass.sampled = {parts.shadow_map};
@@ -191,6 +192,7 @@ PipelineState opaque_state(const ForwardTarget& target) {
   state.raster.cull = CullMode::back;
   state.raster.centroid = target.centroid;
   state.raster.sample_rate = target.sample_rate;
+  state.raster.sample_positions = target.layers.positions;
   return state;
 }
 
@@ -228,14 +230,22 @@ FrameParts prepare_frame(FrameGraph& graph, const FrameRequest& request) {
 }
 
 ForwardTarget make_forward_target(FrameGraph& graph, const std::string& name, int width, int height,
-                                  int samples, Format color, Format depth) {
+                                  int samples, Format color, Format depth, const MulticastPattern& layers) {
   ForwardTarget target;
   target.width = width;
   target.height = height;
-  target.samples = samples;
-  target.color = graph.add_image({name + "_color", color, width, height, samples});
-  target.depth = graph.add_image({name + "_depth", depth, width, height, samples});
+  const int layer_count = std::max(1, static_cast<int>(layers.viewports.size()));
+  target.samples = samples / layer_count;
+  target.layers = layers;
+  target.color = graph.add_image({name + "_color", color, width, height, target.samples, layer_count});
+  target.depth = graph.add_image({name + "_depth", depth, width, height, target.samples, layer_count});
   return target;
+}
+
+MulticastPattern multicast_layers(const FrameRequest& request, int samples, int emulate) {
+  enum Emulate { automatic, on, off };
+  const bool native = emulate == off || (emulate == automatic && samples <= request.features.native_msaa_max);
+  return native || samples <= 8 ? MulticastPattern{} : multicast_pattern(samples);
 }
 
 void add_forward(FrameGraph& graph, const FrameParts& parts, const std::string& prefix,

@@ -6,6 +6,7 @@
 
 #include "algos/shaders/forward.h"
 #include "algos/technique.h"
+#include "pipeline/raster/sample_pattern.h"
 
 namespace hwsim::algos {
 
@@ -40,6 +41,8 @@ struct ForwardTarget {
   int width = 0, height = 0, samples = 1;
   bool centroid = false, sample_rate = false;
   glm::vec2 jitter_px{0.0f};  ///< samples move by this (x right, y down), so geometry moves against it
+  /// Of the layers of a multicast target; no viewports: one layer, standard positions.
+  pipeline::MulticastPattern layers;
 };
 
 /// Background and depth cleared, then everything drawn: opaque, alpha-tested, blended.
@@ -57,7 +60,13 @@ void add_blended_on_output(pipeline::FrameGraph& graph, const FrameParts& parts,
 /// Depth-stencil image and color image in the frame's size times `scale`.
 ForwardTarget make_forward_target(pipeline::FrameGraph& graph, const std::string& name, int width, int height,
                                   int samples, Format color = Format::rgba8_srgb,
-                                  Format depth = Format::d24_unorm_s8);
+                                  Format depth = Format::d24_unorm_s8,
+                                  const pipeline::MulticastPattern& layers = {});
+
+/// Values of a parameter `emulate`: sample counts beyond the GPU's by viewport multicast, or not.
+inline constexpr std::string_view kEmulateChoices = "auto|on|off";
+/// The layers of eight samples that make `samples`; none where they are native, or to be.
+pipeline::MulticastPattern multicast_layers(const FrameRequest& request, int samples, int emulate);
 
 /// The final image: rgba8_srgb, 1x.
 pipeline::ImageId add_output(pipeline::FrameGraph& graph);

@@ -144,6 +144,13 @@ constexpr ErrorCode kCodes[] = {
     {"G008", "no output", "The frame's output is missing, multisampled, or a depth image."},
     {"G009", "bad copy or resolve",
      "Source and target of a copy must be alike; a resolve goes from several samples to one."},
+    {"G011", "multicast used wrongly",
+     "A draw pass may have up to 16 viewports, each shifted by up to one pixel, and attachments of as many "
+     "layers."},
+    {"G010", "coverage used wrongly",
+     "Coverage after depth tests needs forced early tests; a mask that replaces coverage, a shader that "
+     "writes "
+     "one."},
 };
 
 }  // namespace

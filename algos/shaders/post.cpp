@@ -27,6 +27,19 @@ struct DownsampleShader {
   }
 };
 
+struct MergeShader {
+  using Uniforms = MergeUniforms;
+  template <class S>
+  static void run(S& s, const MergeUniforms& u) {
+    using F = typename S::F;
+    const F zero(0.0f);
+    lanes::Vec4<F> sum = {zero, zero, zero, zero};
+    s.loop(1, u.samples, s.valid(),
+           [&](int i) HWY_ATTR { sum = sum + s.load_image(0, s.pixel_x(), s.pixel_y(), typename S::I(i)); });
+    s.output(0, sum * F(1.0f / static_cast<float>(u.samples)));
+  }
+};
+
 struct ScaleShader {
   using Uniforms = ScaleUniforms;
   template <class S>
@@ -40,6 +53,7 @@ struct ScaleShader {
 void run_downsample(pipeline::FragmentBatch& b, const void* u) {
   lanes::run_fragment_shader<DownsampleShader>(b, u);
 }
+void run_merge(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<MergeShader>(b, u); }
 void run_scale(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<ScaleShader>(b, u); }
 }  // namespace hwsim::algos::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -48,12 +62,23 @@ HWY_AFTER_NAMESPACE();
 namespace hwsim::algos {
 HWY_EXPORT(run_downsample);
 HWY_EXPORT(run_scale);
+HWY_EXPORT(run_merge);
 
 const pipeline::FragmentProgram& downsample_program() {
   static const pipeline::FragmentProgram program =
       pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::DownsampleShader>(
           "downsample", [](pipeline::FragmentBatch& b, const void* u) {
             HWY_DYNAMIC_DISPATCH(run_downsample)(b, u);
+          });
+  return program;
+}
+
+const pipeline::FragmentProgram& merge_program() {
+  static const pipeline::FragmentProgram program =
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::MergeShader>(
+          "merge", [](pipeline::FragmentBatch& b, const void* u) {
+            HWY_DYNAMIC_DISPATCH(run_merge)
+            (b, u);
           });
   return program;
 }

@@ -10,6 +10,12 @@ struct DownsampleUniforms {
 /// Box mean of factor x factor pixels of image slot 0, in linear light.
 const pipeline::FragmentProgram& downsample_program();
 
+struct MergeUniforms {
+  int samples = 1;  ///< of all layers
+};
+/// Mean of all samples of image slot 0, layer by layer: the resolve of a multicast target.
+const pipeline::FragmentProgram& merge_program();
+
 struct ScaleUniforms {
   float scale = 1.0f;
 };

@@ -14,8 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
 void expand(GpuImage& image, int block) {
-  expand_planes({image, block, block % image.blocks_x * kBlockPx, block / image.blocks_x * kBlockPx,
-                 depth_scale(image.format)});
+  expand_planes({image, block, image.block_x(block), image.block_y(block), depth_scale(image.format)});
 }
 DepthTileForm form(const GpuImage& image, int block) { return form_of(image, block); }
 

@@ -18,9 +18,9 @@ class PlaneSamples {
  public:
   PlaneSamples(const DepthPlane& plane, int x, int y, SamplePosition position, float scale)
       : z_(plane.z),
-        // Sums of multiples of 1/16 below 2^15: exact.
-        x_(static_cast<float>(x - plane.reference_x) + 0.5f + static_cast<float>(position.x) * 0.0625f),
-        y_(static_cast<float>(y - plane.reference_y) + 0.5f + static_cast<float>(position.y) * 0.0625f),
+        // Sums of multiples of 1/256 below 2^15: exact.
+        x_((static_cast<float>(x) - plane.reference_x) + 0.5f + static_cast<float>(position.x) * 0.0625f),
+        y_((static_cast<float>(y) - plane.reference_y) + 0.5f + static_cast<float>(position.y) * 0.0625f),
         scale_(scale) {}
   HWY_INLINE LaneI at(int first) const {
     return depth_at(z_, load(kLaneOffsets.fx + first) + LaneF(x_), load(kLaneOffsets.fy + first) + LaneF(y_),

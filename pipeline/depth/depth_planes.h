@@ -14,8 +14,8 @@ inline constexpr int kMaxDepthPlanes = 4;
 
 struct DepthPlane {
   PlaneEquation z;
-  std::int32_t reference_x = 0, reference_y = 0;  ///< pixel
-  std::uint32_t nearest = 0, farthest = 0;        ///< bounds over the part of the tile that it may cover
+  float reference_x = 0.0f, reference_y = 0.0f;  ///< as the triangle's
+  std::uint32_t nearest = 0, farthest = 0;       ///< bounds over the part of the tile that it may cover
 
   bool same_plane(const DepthPlane& other) const {
     return z.base == other.z.base && z.ddx == other.z.ddx && z.ddy == other.z.ddy &&

@@ -82,10 +82,10 @@ inline CoarseResult compare_bounds(Compare compare, std::uint32_t nearest, std::
 /// A triangle's plane over its part of the tile at (x, y). Evaluation at samples rounds each of its five
 /// operations, so bounds are widened by 2^-20 of the largest term.
 inline DepthPlane plane_over_tile(const RasterTriangle& t, int x, int y, float scale) {
-  const auto left = static_cast<float>(std::max<int>(x, t.min_x) - t.reference_x),
-             right = static_cast<float>(std::min<int>(x + kBlockPx, t.max_x + 1) - t.reference_x),
-             top = static_cast<float>(std::max<int>(y, t.min_y) - t.reference_y),
-             bottom = static_cast<float>(std::min<int>(y + kBlockPx, t.max_y + 1) - t.reference_y);
+  const float left = (static_cast<float>(std::max<int>(x, t.min_x)) - t.reference_x),
+              right = (static_cast<float>(std::min<int>(x + kBlockPx, t.max_x + 1)) - t.reference_x),
+              top = (static_cast<float>(std::max<int>(y, t.min_y)) - t.reference_y),
+              bottom = (static_cast<float>(std::min<int>(y + kBlockPx, t.max_y + 1)) - t.reference_y);
   const float x0 = t.z.ddx * left, x1 = t.z.ddx * right, y0 = t.z.ddy * top, y1 = t.z.ddy * bottom;
   const float slack = (std::fabs(t.z.base) + std::max(std::fabs(x0), std::fabs(x1)) +
                        std::max(std::fabs(y0), std::fabs(y1))) *
@@ -107,7 +107,7 @@ struct TileDepth {
 template <Compare kCompare, bool kWrite>
 void fine_test_of(const RasterTriangle& t, int x, int y, std::span<const SamplePosition> positions,
                   const TileDepth& tile, SampleMasks& masks) {
-  const float left = static_cast<float>(x - t.reference_x), top = static_cast<float>(y - t.reference_y);
+  const float left = static_cast<float>(x) - t.reference_x, top = static_cast<float>(y) - t.reference_y;
   masks.start();
   LaneI lowest(std::numeric_limits<std::int32_t>::max()), highest(0);
   for (std::size_t s = 0; s < positions.size(); ++s) {

@@ -28,16 +28,18 @@ class BinColor : protected BinDepth {
       const bool reads = state.enabled || state.write_mask != 0xf;
       if (!reads) encode_batch(image.format, batch.color[target], image.words, batch.valid_lanes, texels);
       std::uint64_t written = 0, any_lane = 0, every_sample = ~std::uint64_t{0};
-      for (int s = first_sample; s < last_sample; ++s) {
-        any_lane |= masks[s];
-        every_sample &= masks[s];
-        written += popcount(masks[s]);
-        if (masks[s] == 0) continue;
+      const ColorSamples samples(samples_ / image.samples, first_sample, last_sample);
+      for (int s = samples.begin; s < samples.end; ++s) {
+        const std::uint64_t mask = samples.combine(s, [&](int i) HWY_ATTR { return masks[i]; });
+        any_lane |= mask;
+        every_sample &= mask;
+        written += popcount(mask);
+        if (mask == 0) continue;
         if (reads) blend_tile(image, state, batch.color[target], block, s, texels);
-        store_tile(image, block, s, masks[s], texels);
+        store_tile(image, block, s, mask, texels);
       }
       if (any_lane == 0) continue;
-      const bool all_samples = last_sample - first_sample == samples_;
+      const bool all_samples = samples.end - samples.begin == image.samples;
       count_color(target, block, popcount(any_lane), all_samples ? popcount(every_sample) : 0, written,
                   reads);
     }
@@ -73,23 +75,27 @@ class BinColor : protected BinDepth {
       EncodedBatch texels;
       const bool reads = state.enabled || state.write_mask != 0xf;
       if (!reads) encode_batch(image.format, batch.color[target], image.words, batch.valid_lanes, texels);
-      for (int s = first_sample; s < last_sample; ++s) {
+      const ColorSamples samples(samples_ / image.samples, first_sample, last_sample);
+      for (int s = samples.begin; s < samples.end; ++s) {
         if (reads) blend_batch(image, state, batch.color[target], to, s, texels);
-        write_sample(image, to, batch.sample_index >= 0, s, texels);
+        write_sample(image, to, batch.sample_index >= 0, samples, s, texels);
       }
-      count_quads(target, to, batch.sample_index >= 0, first_sample, last_sample, reads);
+      count_quads(target, to, batch.sample_index >= 0, samples, reads);
     }
   }
 
-  std::uint8_t sample_mask(int quad, bool of_sample_batch, int s) const {
+  std::uint8_t sample_mask(int quad, bool of_sample_batch, const ColorSamples& samples, int s) const {
     const auto q = static_cast<std::size_t>(quad);
-    return w_.samples[of_sample_batch ? static_cast<std::size_t>(w_.sample_quad[q]) : q].masks[s];
+    const QuadSamples& quad_samples =
+        w_.samples[of_sample_batch ? static_cast<std::size_t>(w_.sample_quad[q]) : q];
+    return static_cast<std::uint8_t>(
+        samples.combine(s, [&](int i) HWY_ATTR { return quad_samples.masks[i]; }));
   }
 
-  void write_sample(GpuImage& image, const WriteTargets& to, bool of_sample_batch, int s,
-                    const EncodedBatch& texels) {
+  void write_sample(GpuImage& image, const WriteTargets& to, bool of_sample_batch,
+                    const ColorSamples& samples, int s, const EncodedBatch& texels) {
     for (int q = 0; q < to.count; ++q) {
-      const std::uint8_t mask = sample_mask(q, of_sample_batch, s);
+      const std::uint8_t mask = sample_mask(q, of_sample_batch, samples, s);
       if (mask == 0) continue;
       for (int word = 0; word < image.words; ++word)
         store_quad(texels.words[word] + 4 * q, mask,
@@ -97,19 +103,19 @@ class BinColor : protected BinDepth {
     }
   }
 
-  void count_quads(std::size_t target, const WriteTargets& to, bool of_sample_batch, int first_sample,
-                   int last_sample, bool reads) {
+  void count_quads(std::size_t target, const WriteTargets& to, bool of_sample_batch,
+                   const ColorSamples& samples, bool reads) {
     for (int q = 0; q < to.count; ++q) {
       std::uint64_t written = 0;
       std::uint8_t lanes = 0, all = 15;
-      for (int s = first_sample; s < last_sample; ++s) {
-        const std::uint8_t mask = sample_mask(q, of_sample_batch, s);
+      for (int s = samples.begin; s < samples.end; ++s) {
+        const std::uint8_t mask = sample_mask(q, of_sample_batch, samples, s);
         written += popcount(mask);
         lanes |= mask;
         all &= mask;
       }
       if (lanes == 0) continue;
-      const bool all_samples = last_sample - first_sample == samples_;
+      const bool all_samples = samples.end - samples.begin == c_.color[target]->samples;
       count_color(target, to.block[q], popcount(lanes), all_samples ? popcount(all) : 0, written, reads);
     }
   }

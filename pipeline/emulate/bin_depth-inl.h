@@ -22,15 +22,15 @@ namespace hwsim::pipeline::HWY_NAMESPACE {
 /// a bin's triangles: each adds its stage to what the one before it offers.
 class BinDepth {
  protected:
-  BinDepth(const PassContext& context, BinWorker& worker)
-      : c_(context), w_(worker), samples_(context.samples) {}
+  BinDepth(const PassContext& context, int layer, BinWorker& worker)
+      : c_(context), w_(worker), samples_(context.samples), layer_(layer) {}
 
   /// `plane` becomes the triangle's plane over the tile.
   CoarseResult test_coarse(const RasterTriangle& t, int x, int y, DepthPlane& plane, PassCounters& n) const {
     if (c_.depth == nullptr) return CoarseResult::ambiguous;
     plane = plane_over_tile(t, x, y, c_.depth_scale);
     if (!w_.state->depth.test) return CoarseResult::ambiguous;
-    const auto block = static_cast<std::size_t>(c_.depth->block_index(x, y));
+    const auto block = static_cast<std::size_t>(c_.depth->block_index(x, y, layer_));
     n.hiz.tested_tiles += 1;
     CoarseResult result = compare_bounds(w_.state->depth.compare, plane.nearest, plane.farthest,
                                          c_.depth->depth_min[block], c_.depth->depth_max[block]);
@@ -75,7 +75,7 @@ class BinDepth {
   void test_tile(const RasterTriangle* t, const DepthPlane* plane, int x, int y, CoarseResult coarse,
                  SampleMasks& masks) {
     const PipelineState& state = *w_.state;
-    const int block = c_.depth->block_index(x, y);
+    const int block = c_.depth->block_index(x, y, layer_);
     c_.depth->use_planes(block);
     touch_depth_tile(block);
     std::uint64_t before_depth[kMaxSamples];
@@ -85,7 +85,7 @@ class BinDepth {
       std::memcpy(before_depth, masks.lanes, sizeof(std::uint64_t) * static_cast<std::size_t>(samples_));
     }
     if (plane != nullptr && (state.depth.test || state.depth.write))
-      test_depth(*t, *plane, x, y, coarse, masks);
+      test_depth(*t, *plane, x, y, coarse, state.depth.write, masks);
     if (state.stencil.test)
       update_stencil(state.stencil, samples_, c_.depth->stencil_block(block), before_depth, masks.lanes);
     if (writes_depth_image() && (masks.count != 0 || failing_samples_matter()))
@@ -99,26 +99,26 @@ class BinDepth {
   }
 
   void test_depth(const RasterTriangle& t, const DepthPlane& plane, int x, int y, CoarseResult coarse,
-                  SampleMasks& masks) {
+                  bool write, SampleMasks& masks) {
     const PipelineState& state = *w_.state;
-    const int block = c_.depth->block_index(x, y);
+    const int block = c_.depth->block_index(x, y, layer_);
     const auto index = static_cast<std::size_t>(block);
     const Compare compare = state.depth.test ? state.depth.compare : Compare::always;
     const bool accepted = coarse == CoarseResult::accepted && state.depth.test && c_.skip.accepted_tiles;
-    w_.accepted_tiles_skipped += accepted && !state.depth.write ? 1 : 0;
+    w_.accepted_tiles_skipped += accepted && !write ? 1 : 0;
     if (c_.depth->plane_count[index] == 0) {
-      if (accepted && !state.depth.write) return;
+      if (accepted && !write) return;
       const TileDepth tile{c_.depth->block(block), &c_.depth->depth_min[index], &c_.depth->depth_max[index],
                            c_.depth_scale};
-      fine_test(compare, state.depth.write, t, x, y, c_.positions, tile, masks);
-      if (state.depth.write && masks.count == static_cast<std::uint64_t>(samples_ * kBlockLanes))
+      fine_test(compare, write, t, x, y, c_.positions, tile, masks);
+      if (write && masks.count == static_cast<std::uint64_t>(samples_ * kBlockLanes))
         hold_plane({*c_.depth, block, x, y, c_.depth_scale}, plane);
       return;
     }
     const PlaneTile tile{*c_.depth, block, x, y, c_.depth_scale};
     if (!accepted) test_planes(compare, tile, plane, !c_.skip.plane_tiles, masks);
     w_.plane_tiles_skipped += c_.skip.plane_tiles ? 1 : 0;
-    if (state.depth.write && masks.count != 0) write_plane(tile, plane, masks);
+    if (write && masks.count != 0) write_plane(tile, plane, masks);
   }
 
   /// Once for each chunk that uses the tile: what memory gave, and what went back to it since.
@@ -129,6 +129,15 @@ class BinDepth {
     PassCounters& n = w_.counters();
     count_tile_form(kReadTiles, c_.depth->stored_form[i], n.zrop);
     touch_tile(*c_.depth, block, w_.current_chunk, n.zrop);
+  }
+
+  /// The depth test of a draw without stencil, nothing written.
+  void test_tile_read_only(const RasterTriangle& t, const DepthPlane& plane, int x, int y,
+                           CoarseResult coarse, SampleMasks& masks) {
+    const int block = c_.depth->block_index(x, y, layer_);
+    c_.depth->use_planes(block);
+    touch_depth_tile(block);
+    test_depth(t, plane, x, y, coarse, false, masks);
   }
 
   static std::uint64_t popcount(std::uint64_t bits) {
@@ -145,7 +154,7 @@ class BinDepth {
     } else {
       test_tile(t, nullptr, x, y, CoarseResult::ambiguous, masks);
     }
-    track_depth(c_.depth->block_index(x, y), tested, masks.count);
+    track_depth(c_.depth->block_index(x, y, layer_), tested, masks.count);
     n.zrop.late_z_tested_samples += tested;
     n.zrop.late_z_killed_samples += tested - masks.count;
     count_depth_traffic(tested, masks.count, n);
@@ -172,9 +181,9 @@ class BinDepth {
       HWY_ALIGN float values[4] = {};
       if (const RasterTriangle* t = w_.batch.triangle[q];
           t != nullptr) {  // null in full-screen passes: stencil only
-        const float x0 = static_cast<float>(w_.batch.quad_x[q] - t->reference_x) + 0.5f +
+        const float x0 = (static_cast<float>(w_.batch.quad_x[q]) - t->reference_x) + 0.5f +
                          static_cast<float>(p.x) * 0.0625f;
-        const float y0 = static_cast<float>(w_.batch.quad_y[q] - t->reference_y) + 0.5f +
+        const float y0 = (static_cast<float>(w_.batch.quad_y[q]) - t->reference_y) + 0.5f +
                          static_cast<float>(p.y) * 0.0625f;
         const auto x = hn::Add(hn::Load(d, kQuadX), hn::Set(d, x0)),
                    y = hn::Add(hn::Load(d, kQuadY), hn::Set(d, y0));
@@ -255,6 +264,7 @@ class BinDepth {
   const PassContext& c_;
   BinWorker& w_;
   const int samples_;
+  const int layer_;  ///< of the attachments
 };
 
 }  // namespace hwsim::pipeline::HWY_NAMESPACE

@@ -20,8 +20,8 @@ inline constexpr SamplePosition kPixelCenter{};
 
 class BinRunner : private BinShading {
  public:
-  BinRunner(const PassContext& context, int bin, BinWorker& worker)
-      : BinShading(context, worker),
+  BinRunner(const PassContext& context, int bin, int layer, BinWorker& worker)
+      : BinShading(context, layer, worker),
         bin_x_(bin % context.bins_x * kBinPx),
         bin_y_(bin / context.bins_x * kBinPx) {
     w_.tracker.start_bin(static_cast<std::uint32_t>(bin));
@@ -30,9 +30,10 @@ class BinRunner : private BinShading {
   }
 
   void run(const Segment& segment, int bin) {
+    const auto slot = static_cast<std::size_t>(layer_ * c_.bins_x * c_.bins_y + bin);
     for (const GeometryItem& item : segment.items) {
-      const std::uint32_t first = item.bin_start[static_cast<std::size_t>(bin)];
-      const std::uint32_t last = item.bin_start[static_cast<std::size_t>(bin) + 1];
+      const std::uint32_t first = item.bin_start[slot];
+      const std::uint32_t last = item.bin_start[slot + 1];
       if (first == last) continue;
       start_draw(c_.draws[item.draw]);
       for (std::uint32_t i = first; i < last; ++i) rasterize(item.triangles[item.binned[i]], segment, item);
@@ -44,7 +45,8 @@ class BinRunner : private BinShading {
     w_.state = &c_.pass->state;
     w_.program = c_.pass->fragment;
     w_.uniforms = c_.pass->uniforms.get();
-    w_.late_z = w_.program->can_discard && w_.state->stencil.test;
+    w_.late_z = (w_.program->can_discard || w_.program->writes_mask) && w_.state->stencil.test;
+    w_.early_reject = false;
     w_.batch.material = nullptr;
     start_batch();
     for (int y = bin_y_; y < std::min(bin_y_ + kBinPx, c_.height); y += kBlockPx)
@@ -63,6 +65,7 @@ class BinRunner : private BinShading {
       w_.program = draw.batch->fragment;
       w_.uniforms = draw.batch->fragment_uniforms.get();
       w_.late_z = tests_late(*w_.state, w_.program);
+      w_.early_reject = rejects_early(*w_.state, w_.program);
       w_.batch.material = draw.material;
       start_batch();
     }
@@ -73,6 +76,8 @@ class BinRunner : private BinShading {
     w_.batch.resources = &w_.resources;
     w_.batch.quad_count = 0;
     w_.batch.sample_index = -1;
+    w_.batch.layer = layer_;
+    start_coverage();
     ordered_ = w_.late_z || (w_.program != nullptr && w_.program->writes_storage);
     for (const BlendState& b : w_.state->blend) ordered_ = ordered_ || b.enabled || b.write_mask != 0xf;
   }
@@ -96,7 +101,9 @@ class BinRunner : private BinShading {
         const CoarseResult coarse = test_coarse(t, x, y, plane, n);
         if (coarse == CoarseResult::killed) continue;
         if (!cover(t, coverage, x, y, masks, n)) continue;
+        if (keeps_primitive_masks_) primitive_masks_ = masks;
         if (!w_.late_z && !test_early(t, plane, x, y, coarse, masks, n)) continue;
+        if (w_.early_reject && !reject_early(t, plane, x, y, coarse, masks, n)) continue;
         if (w_.program != nullptr) append_tile(&t, &segment, &item, x, y, masks, n);
       }
     }
@@ -146,10 +153,22 @@ class BinRunner : private BinShading {
     }
     const std::uint64_t tested = masks.count;
     test_tile(&t, &plane, x, y, coarse, masks);
-    track_depth(c_.depth->block_index(x, y), tested, masks.count);
+    track_depth(c_.depth->block_index(x, y, layer_), tested, masks.count);
     n.zrop.early_z_tested_samples += tested;
     n.zrop.early_z_killed_samples += tested - masks.count;
     count_depth_traffic(tested, masks.count, n);
+    return masks.count != 0;
+  }
+
+  /// The depth test alone, without writes; the shader's samples are tested again and written after it.
+  bool reject_early(const RasterTriangle& t, const DepthPlane& plane, int x, int y, CoarseResult coarse,
+                    SampleMasks& masks, PassCounters& n) {
+    const std::uint64_t tested = masks.count;
+    test_tile_read_only(t, plane, x, y, coarse, masks);
+    track_depth(c_.depth->block_index(x, y, layer_), tested, 0);
+    n.zrop.early_z_tested_samples += tested;
+    n.zrop.early_z_killed_samples += tested - masks.count;
+    n.mem.depth_read_bytes += tested * static_cast<std::uint64_t>(c_.depth_bytes);
     return masks.count != 0;
   }
 
@@ -158,13 +177,14 @@ class BinRunner : private BinShading {
     masks.start();
     const std::uint64_t inside = lanes_inside(x, y);
     for (int s = 0; s < samples_; ++s) masks.set(static_cast<std::size_t>(s), inside);
+    if (keeps_primitive_masks_) primitive_masks_ = masks;
     PassCounters& n = w_.counters();
     n.raster.visited_tiles += 1;
     n.raster.covered_samples += masks.count;
     if (c_.depth != nullptr && w_.state->stencil.test && !w_.late_z) {
       const std::uint64_t tested = masks.count;
       test_tile(nullptr, nullptr, x, y, CoarseResult::ambiguous, masks);
-      track_depth(c_.depth->block_index(x, y), tested, masks.count);
+      track_depth(c_.depth->block_index(x, y, layer_), tested, masks.count);
       n.zrop.early_z_tested_samples += tested;
       n.zrop.early_z_killed_samples += tested - masks.count;
       count_depth_traffic(tested, masks.count, n);
@@ -178,10 +198,11 @@ class BinRunner : private BinShading {
 };
 
 void run_bin_target(const PassContext& context, const Segment& segment, int bin, BinWorker& worker) {
-  BinRunner(context, bin, worker).run(segment, bin);
+  for (int layer = 0; layer < static_cast<int>(context.viewports.size()); ++layer)
+    BinRunner(context, bin, layer, worker).run(segment, bin);
 }
 void run_full_screen_bin_target(const PassContext& context, int bin, BinWorker& worker) {
-  BinRunner(context, bin, worker).run_full_screen();
+  BinRunner(context, bin, 0, worker).run_full_screen();
 }
 
 }  // namespace hwsim::pipeline::HWY_NAMESPACE

@@ -1,5 +1,6 @@
 // Fragment shading of a screen bin. Per-target include guard.
 #include "pipeline/emulate/bin_color-inl.h"
+#include "pipeline/emulate/coverage_output-inl.h"
 
 #if defined(HWSIM_EMULATE_BIN_SHADING_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_EMULATE_BIN_SHADING_INL_H_
@@ -37,7 +38,9 @@ class BinShading : protected BinColor {
     FragmentBatch& batch = w_.sample_batch;
     start_tile(batch, t, segment, item, x, y);
     const bool centroid = w_.state->raster.centroid;
-    if (centroid || w_.program->reads_coverage) set_lane_coverage(batch, masks.lanes);
+    if (centroid) set_lane_coverage(primitive_masks_.lanes, batch.primitive_coverage);
+    if (w_.program->reads_coverage)
+      set_lane_coverage(w_.state->coverage.post_depth ? masks.lanes : primitive_masks_.lanes, batch.coverage);
     if (w_.state->raster.sample_rate && samples_ > 1) {
       for (int s = 0; s < samples_; ++s) {
         SampleMasks kept = masks;
@@ -52,8 +55,10 @@ class BinShading : protected BinColor {
                 0);
     shade(batch, false);
     add_tile_heat(batch, x, y);
-    if (batch.discarded_lanes == 0 && !w_.late_z) return write_tile(batch, block, masks.lanes, 0, samples_);
+    if (batch.discarded_lanes == 0 && !w_.late_z && !masks_output_)
+      return write_tile(batch, block, masks.lanes, 0, samples_);
     SampleMasks kept = masks;
+    apply_output_mask(batch, 0, samples_, kept);
     kept.keep(~batch.discarded_lanes, 0, samples_, samples_);
     if (w_.late_z) test_tile_late(t, x, y, kept);
     write_tile(batch, block, kept.lanes, 0, samples_);
@@ -66,6 +71,7 @@ class BinShading : protected BinColor {
     set_up_tile(batch, x, y, AttributeLocation::sample, c_.positions, s);
     shade(batch, true);
     add_tile_heat(batch, x, y);
+    apply_output_mask(batch, s, s + 1, kept);
     kept.keep(~batch.discarded_lanes, s, s + 1, samples_);
     if (w_.late_z) test_tile_late(batch.triangle[0], x, y, kept);
     write_tile(batch, block, kept.lanes, s, s + 1);
@@ -75,6 +81,7 @@ class BinShading : protected BinColor {
                   const GeometryItem* item, int x, int y) {
     batch.material = w_.batch.material;
     batch.resources = w_.batch.resources;
+    batch.layer = layer_;
     batch.quad_count = kBatchQuads;
     batch.triangle.fill(t);
     for (int quad = 0; quad < kQuadsPerBlock; ++quad) {
@@ -89,13 +96,23 @@ class BinShading : protected BinColor {
       batch.varyings[v].fill(varyings_of(t->vertex[v], stride, *segment, *item));
   }
 
-  void set_lane_coverage(FragmentBatch& batch, const std::uint64_t* masks) const {
+  void apply_output_mask(FragmentBatch& batch, int first_sample, int last_sample, SampleMasks& kept) {
+    if (!masks_output_) return;
+    if (!w_.program->writes_mask) alpha_to_output_mask(alpha_, batch);
+    const bool replaces = w_.state->coverage.override_output;
+    for (int s = first_sample; s < last_sample; ++s) {
+      const std::uint64_t lanes = lanes_with_sample(batch, s);
+      kept.lanes[s] = replaces ? lanes : kept.lanes[s] & lanes;
+    }
+  }
+
+  void set_lane_coverage(const std::uint64_t* masks, std::array<std::uint32_t, kBatchLanes>& coverage) const {
     for (int first = 0; first < kBlockLanes; first += kVectorLanes) {
       LaneI bits(0);
       for (int s = 0; s < samples_; ++s)
         bits = bits |
                select(mask_from_bits(masks[s], first), LaneI(static_cast<std::int32_t>(1u << s)), LaneI(0));
-      store(bits, reinterpret_cast<std::int32_t*>(batch.coverage.data()) + first);
+      store(bits, reinterpret_cast<std::int32_t*>(coverage.data()) + first);
     }
   }
 
@@ -111,9 +128,10 @@ class BinShading : protected BinColor {
     return false;
   }
 
-  /// The number of the tile in targets of the pass's size.
+  /// The number of the tile's block in targets of the pass's size.
   int tile_number(int x, int y) const {
-    return (y / kBlockPx) * ((c_.width + kBlockPx - 1) / kBlockPx) + x / kBlockPx;
+    const int tile = (y / kBlockPx) * ((c_.width + kBlockPx - 1) / kBlockPx) + x / kBlockPx;
+    return tile * static_cast<int>(c_.viewports.size()) + layer_;
   }
 
   void append_tile(const RasterTriangle* t, const Segment* segment, const GeometryItem* item, int x, int y,
@@ -148,6 +166,10 @@ class BinShading : protected BinColor {
     w_.quad_in_block[q] = quad;
     for (int s = 0; s < samples_; ++s)
       w_.samples[q].masks[s] = static_cast<std::uint8_t>(masks[s] >> (4 * quad) & 15);
+    if (keeps_primitive_masks_)
+      for (int s = 0; s < samples_; ++s)
+        w_.primitive_samples[q].masks[s] =
+            static_cast<std::uint8_t>(primitive_masks_.lanes[s] >> (4 * quad) & 15);
     if (t == nullptr) return;
     batch.primitive[q] = t->primitive;
     batch.front_facing[q] = t->front_facing != w_.draw->mirrored;
@@ -174,9 +196,7 @@ class BinShading : protected BinColor {
       for (int s = 0; s < samples_; ++s) lanes |= w_.samples[static_cast<std::size_t>(q)].masks[s];
       active |= static_cast<std::uint64_t>(lanes) << (4 * q);
     }
-    if (w_.state->raster.centroid || w_.program->reads_coverage)
-      for (int q = 0; q < quads; ++q)
-        lane_coverage(w_.samples[static_cast<std::size_t>(q)], samples_, batch.coverage.data() + 4 * q);
+    gather_coverage();
     batch.active_lanes = active;
     batch.valid_lanes = quads == kBatchQuads ? ~std::uint64_t{0} : (std::uint64_t{1} << (4 * quads)) - 1;
     if (w_.state->raster.sample_rate && samples_ > 1) {
@@ -188,6 +208,17 @@ class BinShading : protected BinColor {
     batch.quad_count = 0;
   }
 
+  void gather_coverage() {
+    FragmentBatch& batch = w_.batch;
+    for (std::size_t q = 0; q < static_cast<std::size_t>(batch.quad_count); ++q) {
+      if (w_.state->raster.centroid)
+        lane_coverage(w_.primitive_samples[q], samples_, batch.primitive_coverage.data() + 4 * q);
+      if (w_.program->reads_coverage)
+        lane_coverage(w_.state->coverage.post_depth ? w_.samples[q] : w_.primitive_samples[q], samples_,
+                      batch.coverage.data() + 4 * q);
+    }
+  }
+
   void shade_pixels() {
     FragmentBatch& batch = w_.batch;
     const AttributeLocation location =
@@ -195,6 +226,7 @@ class BinShading : protected BinColor {
     for (int q = 0; q < batch.quad_count; ++q) set_up_quad(batch, q, location, c_.positions, 0);
     shade(batch, false);
     add_heat(batch);
+    if (masks_output_) mask_quads();
     if (batch.discarded_lanes != 0) drop_discarded(batch.discarded_lanes);
     if (w_.late_z) test_late();
     write_color(batch, w_.block.data(), w_.quad_in_block.data(), 0, samples_);
@@ -224,11 +256,13 @@ class BinShading : protected BinColor {
         part.quad_count == kBatchQuads ? ~std::uint64_t{0} : (std::uint64_t{1} << (4 * part.quad_count)) - 1;
     part.material = batch.material;
     part.resources = batch.resources;
+    part.layer = layer_;
     part.sample_index = s;
     for (int q = 0; q < part.quad_count; ++q)
       set_up_quad(part, q, AttributeLocation::sample, c_.positions, s);
     shade(part, true);
     add_heat(part);
+    if (masks_output_) mask_quads_of_sample(part, s);
     drop_discarded_sample(part, s);
     write_color(part, block, quad_in_block, s, s + 1);
   }
@@ -280,6 +314,28 @@ class BinShading : protected BinColor {
     }
   }
 
+  void mask_quads() {
+    FragmentBatch& batch = w_.batch;
+    if (!w_.program->writes_mask) alpha_to_output_mask(alpha_, batch);
+    const bool replaces = w_.state->coverage.override_output;
+    for (int s = 0; s < samples_; ++s) {
+      const std::uint64_t lanes = lanes_with_sample(batch, s);
+      for (std::size_t q = 0; q < static_cast<std::size_t>(batch.quad_count); ++q) {
+        std::uint8_t& mask = w_.samples[q].masks[s];
+        const auto output = static_cast<std::uint8_t>(lanes >> (4 * q) & 15);
+        mask = replaces ? output : static_cast<std::uint8_t>(mask & output);
+      }
+    }
+  }
+
+  void mask_quads_of_sample(FragmentBatch& part, int s) {
+    if (!w_.program->writes_mask) alpha_to_output_mask(alpha_, part);
+    const std::uint64_t lanes = lanes_with_sample(part, s);
+    for (std::size_t q = 0; q < static_cast<std::size_t>(part.quad_count); ++q)
+      w_.samples[static_cast<std::size_t>(w_.sample_quad[q])].masks[s] &=
+          static_cast<std::uint8_t>(lanes >> (4 * q) & 15);
+  }
+
   void drop_discarded(std::uint64_t discarded) {
     for (std::size_t q = 0; q < static_cast<std::size_t>(w_.batch.quad_count); ++q) {
       const auto kept = static_cast<std::uint8_t>(~(discarded >> (4 * q)) & 15);
@@ -295,6 +351,21 @@ class BinShading : protected BinColor {
     if (w_.late_z) test_late_sample(s);
   }
 
+  /// What the current draws' state and program ask of coverage.
+  void start_coverage() {
+    const CoverageState& state = w_.state->coverage;
+    const bool reads_primitive = w_.program != nullptr && w_.program->reads_coverage && !state.post_depth;
+    const bool writes_mask = w_.program != nullptr && w_.program->writes_mask;
+    keeps_primitive_masks_ = w_.state->raster.centroid || reads_primitive;
+    masks_output_ = writes_mask || (w_.program != nullptr && state.alpha_to_coverage);
+    if (masks_output_ && !writes_mask)
+      alpha_ = AlphaCoverage(samples_, layer_, static_cast<int>(c_.viewports.size()), state.alpha_dither);
+  }
+
+  SampleMasks primitive_masks_;  ///< of the tile at hand, before depth and stencil
+  bool keeps_primitive_masks_ = false;
+  bool masks_output_ = false;  ///< a mask or alpha changes the coverage after the shader
+  AlphaCoverage alpha_;
   bool ordered_ = false;  ///< quads on the same pixels must not share a batch: blending, late tests and
                           ///< storage see what they write, in submission order
 };

@@ -21,15 +21,14 @@ void for_each_bin(const PassContext& context, const RasterTriangle& t, Body&& bo
   for (int y = top; y <= bottom; ++y)
     for (int x = left; x <= right; ++x)
       if ((left == right && top == bottom) || touches_bin(t, x, y))
-        body(static_cast<std::size_t>(y) * static_cast<std::size_t>(context.bins_x) +
-             static_cast<std::size_t>(x));
+        body(static_cast<std::size_t>((t.layer * context.bins_y + y) * context.bins_x + x));
 }
 
 }  // namespace
 
 // A counting sort of (bin, triangle) pairs.
 void bin_triangles(const PassContext& context, GeometryItem& item) {
-  const auto bins = static_cast<std::size_t>(context.bins_x) * static_cast<std::size_t>(context.bins_y);
+  const auto bins = static_cast<std::size_t>(context.bins_x * context.bins_y) * context.viewports.size();
   item.bin_start.assign(bins + 1, 0);
   for (const RasterTriangle& t : item.triangles)
     for_each_bin(context, t, [&](std::size_t b) { item.bin_start[b + 1] += 1; });

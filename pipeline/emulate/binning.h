@@ -4,7 +4,7 @@
 
 namespace hwsim::pipeline {
 
-/// Bins in order, triangles in submission order within each.
+/// Layer by layer bins in order, triangles in submission order within each.
 void bin_triangles(const PassContext& context, GeometryItem& item);
 
 }  // namespace hwsim::pipeline

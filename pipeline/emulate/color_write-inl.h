@@ -72,6 +72,23 @@ HWY_INLINE Vec4<LaneF> blend(const BlendState& state, const Vec4<LaneF>& src, co
           src.w * sa.w + dst.w * da.w};
 }
 
+/// The color samples that raster samples [first, last) write: with fewer color than raster samples, color
+/// sample j is written iff one of raster samples [j ratio, (j + 1) ratio) is set (techniques 0.4).
+struct ColorSamples {
+  int ratio, first, last;
+  int begin, end;
+  ColorSamples(int r, int f, int l) : ratio(r), first(f), last(l), begin(f / r), end((l + r - 1) / r) {}
+
+  /// The union of mask_of(raster sample) over those of color sample j.
+  template <class MaskOf>
+  HWY_INLINE auto combine(int j, MaskOf&& mask_of) const {
+    const int from = std::max(j * ratio, first), to = std::min((j + 1) * ratio, last);
+    auto mask = mask_of(from);
+    for (int i = from + 1; i < to; ++i) mask = static_cast<decltype(mask)>(mask | mask_of(i));
+    return mask;
+  }
+};
+
 /// Where a batch's quads go: the tile of each, the quad within it, and the samples to write (bit i: lane i).
 struct WriteTargets {
   const std::int32_t* block;

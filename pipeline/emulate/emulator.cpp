@@ -77,7 +77,8 @@ class FrameRunner {
     for (std::size_t i = 0; i < images_.size(); ++i) {
       if (compiled_.images[i].first_pass != position) continue;
       const ImageDesc& desc = graph_.images()[i];
-      images_[i] = std::make_unique<GpuImage>(desc.format, desc.width, desc.height, desc.samples);
+      images_[i] =
+          std::make_unique<GpuImage>(desc.format, desc.width, desc.height, desc.samples, desc.layers);
     }
     for (std::size_t i = 0; i < buffers_.size(); ++i)
       if (compiled_.buffers[i].first_pass == position) buffers_[i].assign(graph_.buffers()[i].words, 0);
@@ -111,7 +112,8 @@ class FrameRunner {
       bool blended = i < pass.state.blend.size() && pass.state.blend[i].enabled;
       for (const DrawBatch& batch : pass.batches)
         blended = blended || (i < batch.state.blend.size() && batch.state.blend[i].enabled);
-      work.color_targets.push_back({desc.format, desc.samples, blended});
+      const bool every_layer = pass.kind != PassKind::draw && pass.kind != PassKind::full_screen;
+      work.color_targets.push_back({desc.format, desc.samples * (every_layer ? desc.layers : 1), blended});
       work.color_cleared_before =
           work.color_cleared_before && cleared_[static_cast<std::size_t>(written[i].index)] != 0;
     }
@@ -160,6 +162,7 @@ class FrameRunner {
       c.depth_bytes = info(c.depth->format).bytes;
     }
     for (const ImageId id : pass.color) c.color.push_back(&image(id));
+    set_viewports(pass, c);
     bind(pass, c.resources);
     set_positions(pass, c);
     if (c.depth != nullptr) place_planes(*c.depth, c.positions);
@@ -191,6 +194,15 @@ class FrameRunner {
       return;
     if (!depth.plane_positions.empty()) depth.expand_all(options_.jobs);
     depth.plane_positions.assign(positions.begin(), positions.end());
+  }
+
+  static void set_viewports(const Pass& pass, PassContext& c) {
+    static constexpr ViewportShift kNone{};
+    c.viewports = pass.viewports.empty() ? std::span(&kNone, 1) : std::span(pass.viewports);
+    int largest = 0;
+    for (const ViewportShift shift : c.viewports)
+      largest = std::max({largest, std::abs(shift.x), std::abs(shift.y)});
+    c.band = guard_band(pass.width, pass.height, (largest + kSubpixelUnits - 1) / kSubpixelUnits);
   }
 
   static void set_positions(const Pass& pass, PassContext& c) {
@@ -269,7 +281,7 @@ class FrameRunner {
   }
 
   void save_depth(GpuImage& depth) {
-    for (int block = 0; block < depth.blocks_x * depth.blocks_y; ++block)
+    for (int block = 0; block < static_cast<int>(depth.unsaved.size()); ++block)
       save_depth_tile(depth, block, workers_.front().chunks);
   }
 
@@ -348,7 +360,8 @@ class FrameRunner {
     std::uint32_t first = 0;
     while (first < c.draws.size()) {
       std::uint32_t last = first;
-      for (std::uint64_t n = 0; last < c.draws.size() && n < kSegmentTriangles; ++last)
+      const std::uint64_t most = std::max<std::uint64_t>(1, kSegmentTriangles / c.viewports.size());
+      for (std::uint64_t n = 0; last < c.draws.size() && n < most; ++last)
         n += c.draws[last].primitive_count();
       Segment segment = make_segment(c, first, last);
       skipped_draws_ += run_geometry(c, segment, geometry, workers_);

@@ -15,7 +15,7 @@ namespace hwsim::pipeline {
 
 inline constexpr int kBatchLanes = 64;
 inline constexpr int kBatchQuads = 16;
-inline constexpr int kMaxColorTargets = 6;
+inline constexpr int kMaxColorTargets = 8;
 inline constexpr int kMaxImageSlots = 8;
 inline constexpr int kMaxBufferSlots = 8;
 
@@ -39,7 +39,7 @@ struct MaterialView {
 /// Image and buffer slots of a pass.
 struct ResourceView {
   std::array<const GpuImage*, kMaxImageSlots> images{};
-  std::array<GpuImage*, 2> targets{};  ///< compute passes: images to store to
+  std::array<GpuImage*, kMaxColorTargets> targets{};  ///< compute passes: images to store to
   std::array<std::uint32_t*, kMaxBufferSlots> buffers{};
   std::array<std::uint64_t, kMaxBufferSlots> buffer_words{};
   std::array<std::uint32_t, kMaxImageSlots> image_first_line{};  ///< after the lines of the textures
@@ -66,6 +66,7 @@ struct FragmentBatch {
   std::uint64_t valid_lanes = 0;   ///< lanes of quads that run, helpers included
   std::uint64_t active_lanes = 0;  ///< of these, fragments
   int sample_index = -1;           ///< sample-rate shading: the sample; -1 at pixel rate
+  int layer = 0;                   ///< of the attachments
 
   // Of each quad
   std::array<std::int32_t, kBatchQuads> quad_x, quad_y;  ///< top left pixel
@@ -79,7 +80,8 @@ struct FragmentBatch {
       b2;  ///< perspective-correct barycentrics at the shading point
   alignas(64) std::array<float, kBatchLanes> b1_center, b2_center;  ///< at the pixel center, for derivatives
   alignas(64) std::array<std::int32_t, kBatchLanes> pixel_x, pixel_y;
-  alignas(64) std::array<std::uint32_t, kBatchLanes> coverage;  ///< bit s: sample s
+  alignas(64) std::array<std::uint32_t, kBatchLanes> coverage;  ///< bit s: sample s, as the shader sees it
+  alignas(64) std::array<std::uint32_t, kBatchLanes> primitive_coverage;  ///< before depth and stencil
 
   const MaterialView* material = nullptr;
   const ResourceView* resources = nullptr;
@@ -87,6 +89,7 @@ struct FragmentBatch {
 
   // Results
   alignas(64) float color[kMaxColorTargets][4][kBatchLanes];
+  alignas(64) std::array<std::uint32_t, kBatchLanes> output_mask;  ///< of programs that write one
   std::uint64_t discarded_lanes = 0;
   BlockTrips blocks;
   std::uint64_t tex_bilinear_probes = 0;  ///< beyond the first of each request

@@ -51,7 +51,7 @@ HWY_INLINE void lane_coverage(const QuadSamples& samples, int count, std::uint32
 }
 
 /// Attribute location of the centroid rule (techniques 0.3.6): the center where all samples are covered or
-/// none is, else the first covered sample in index order.
+/// none is, else the first covered sample in index order. Depth tests don't move it.
 inline void centroid_offsets(const std::uint32_t* coverage, std::span<const SamplePosition> positions,
                              float* dx, float* dy) {
   const std::uint32_t all = positions.size() == 32 ? 0xffffffffu : (1u << positions.size()) - 1;
@@ -89,7 +89,7 @@ HWY_INLINE void location_offsets(const FragmentBatch& batch, int first, Attribut
   }
   HWY_ALIGN float x[kVectorLanes], y[kVectorLanes];
   for (int lane = 0; lane < kVectorLanes; lane += 4)
-    centroid_offsets(batch.coverage.data() + first + lane, positions, x + lane, y + lane);
+    centroid_offsets(batch.primitive_coverage.data() + first + lane, positions, x + lane, y + lane);
   dx = load(x);
   dy = load(y);
 }
@@ -103,9 +103,9 @@ inline void set_up_tile(FragmentBatch& batch, int x, int y, AttributeLocation lo
     store(load(kLaneOffsets.x + first) + LaneI(x), batch.pixel_x.data() + first);
     store(load(kLaneOffsets.y + first) + LaneI(y), batch.pixel_y.data() + first);
     if (t == nullptr) continue;
-    // Quad corner, then lane, then half a pixel: integers and halves, exact in any order.
-    const LaneF px = load(kLaneOffsets.fx + first) + LaneF(static_cast<float>(x - t->reference_x) + 0.5f);
-    const LaneF py = load(kLaneOffsets.fy + first) + LaneF(static_cast<float>(y - t->reference_y) + 0.5f);
+    // Quad corner, then lane, then half a pixel: multiples of 1/256, exact in any order.
+    const LaneF px = load(kLaneOffsets.fx + first) + LaneF((static_cast<float>(x) - t->reference_x) + 0.5f);
+    const LaneF py = load(kLaneOffsets.fy + first) + LaneF((static_cast<float>(y) - t->reference_y) + 0.5f);
     barycentrics(*t, px, py, batch.b1_center.data() + first, batch.b2_center.data() + first);
     if (location == AttributeLocation::center) {
       store(load(batch.b1_center.data() + first), batch.b1.data() + first);
@@ -127,9 +127,9 @@ HWY_INLINE void set_up_quad(FragmentBatch& batch, int quad, AttributeLocation lo
   const D4 d;
   const auto q = static_cast<std::size_t>(quad);
   const auto x =
-      hn::Add(hn::Load(d, kQuadX), hn::Set(d, static_cast<float>(batch.quad_x[q] - t->reference_x) + 0.5f));
+      hn::Add(hn::Load(d, kQuadX), hn::Set(d, (static_cast<float>(batch.quad_x[q]) - t->reference_x) + 0.5f));
   const auto y =
-      hn::Add(hn::Load(d, kQuadY), hn::Set(d, static_cast<float>(batch.quad_y[q] - t->reference_y) + 0.5f));
+      hn::Add(hn::Load(d, kQuadY), hn::Set(d, (static_cast<float>(batch.quad_y[q]) - t->reference_y) + 0.5f));
   const int lane = 4 * quad;
   barycentrics(*t, x, y, batch.b1_center.data() + lane, batch.b2_center.data() + lane);
   if (location == AttributeLocation::center) {
@@ -139,7 +139,7 @@ HWY_INLINE void set_up_quad(FragmentBatch& batch, int quad, AttributeLocation lo
   }
   HWY_ALIGN float dx[4], dy[4];
   if (location == AttributeLocation::centroid) {
-    centroid_offsets(batch.coverage.data() + lane, positions, dx, dy);
+    centroid_offsets(batch.primitive_coverage.data() + lane, positions, dx, dy);
   } else {
     const SamplePosition p = positions[static_cast<std::size_t>(sample)];
     for (int i = 0; i < 4; ++i) {

@@ -97,7 +97,8 @@ std::uint64_t run_geometry(const PassContext& context, Segment& segment, const G
     std::vector<PassCounters>& chunks = workers[static_cast<std::size_t>(worker)].chunks;
     if (segment.outside[item.draw - segment.first_draw] != 0) {
       count_outside(context, item, chunks);
-      item.bin_start.assign(static_cast<std::size_t>(context.bins_x * context.bins_y) + 1, 0);
+      item.bin_start.assign(
+          static_cast<std::size_t>(context.bins_x * context.bins_y) * context.viewports.size() + 1, 0);
       return;
     }
     build_item(context, segment, item, chunks);

@@ -10,13 +10,15 @@
 namespace hwsim::pipeline {
 using namespace HWY_NAMESPACE;  // the scalar lane of the static target
 
-GpuImage::GpuImage(Format f, int w, int h, int s) : format(f), width(w), height(h), samples(s) {
+GpuImage::GpuImage(Format f, int w, int h, int s, int array_layers)
+    : format(f), width(w), height(h), samples(s), layers(array_layers) {
   const FormatInfo& format_info = info(f);
   words = format_info.is_depth ? 1 : (format_info.bytes + 3) / 4;
   if (format_info.is_integer) words = format_info.channels;
   blocks_x = (w + kBlockPx - 1) / kBlockPx;
   blocks_y = (h + kBlockPx - 1) / kBlockPx;
-  const auto blocks = static_cast<std::size_t>(blocks_x) * static_cast<std::size_t>(blocks_y);
+  const std::size_t blocks = static_cast<std::size_t>(blocks_x) * static_cast<std::size_t>(blocks_y) *
+                             static_cast<std::size_t>(layers);
   texels.resize(blocks * block_words());
   touched_chunk.resize(blocks);
   cleared.resize(blocks);
@@ -53,8 +55,7 @@ void GpuImage::start_planes(int block_index) {
 }
 
 std::uint64_t GpuImage::lanes_inside(int block_index) const {
-  const int right = width - block_index % blocks_x * kBlockPx,
-            bottom = height - block_index / blocks_x * kBlockPx;
+  const int right = width - block_x(block_index), bottom = height - block_y(block_index);
   if (right >= kBlockPx && bottom >= kBlockPx) return ~std::uint64_t{0};
   std::uint64_t inside = 0;
   for (int lane = 0; lane < kBlockLanes; ++lane)
@@ -64,14 +65,16 @@ std::uint64_t GpuImage::lanes_inside(int block_index) const {
 
 void GpuImage::use_all(int jobs) {
   parallel_for(static_cast<std::size_t>(blocks_y), jobs, [&](std::size_t row, int) {
-    for (int bx = 0; bx < blocks_x; ++bx) use(static_cast<int>(row) * blocks_x + bx);
+    const int row_blocks = blocks_x * layers;
+    for (int i = 0; i < row_blocks; ++i) use(static_cast<int>(row) * row_blocks + i);
   });
 }
 
 void GpuImage::expand_all(int jobs) {
   parallel_for(static_cast<std::size_t>(blocks_y), jobs, [&](std::size_t row, int) {
-    for (int bx = 0; bx < blocks_x; ++bx) {
-      const int block = static_cast<int>(row) * blocks_x + bx;
+    const int row_blocks = blocks_x * layers;
+    for (int i = 0; i < row_blocks; ++i) {
+      const int block = static_cast<int>(row) * row_blocks + i;
       if (plane_count[static_cast<std::size_t>(block)] != 0) expand_depth_tile(*this, block);
     }
   });

@@ -26,13 +26,14 @@ struct GpuImage;
 /// Writes the planes of a tile into its texels (depth/depth_expand.cpp).
 void expand_depth_tile(GpuImage& image, int block_index);
 
-/// Texels are stored tile by tile; in a tile sample by sample; in a sample, for each 32-bit word of a texel,
-/// the 64 lanes. Formats below 32 bits take a word each here; what the simulated GPU allocates is the
-/// format's business. Depth formats hold the depth as an integer that orders as the depth does (see
-/// depth/depth_format.h), stencil apart.
+/// Texels are stored tile by tile; in a tile layer by layer; in a layer sample by sample; in a sample, for
+/// each 32-bit word of a texel, the 64 lanes. Formats below 32 bits take a word each here; what the simulated
+/// GPU allocates is the format's business. Depth formats hold the depth as an integer that orders as the
+/// depth does (see depth/depth_format.h), stencil apart.
 struct GpuImage {
   Format format = Format::none;
   int width = 0, height = 0, samples = 1;
+  int layers = 1;
   int words = 1;  ///< 32-bit words of a texel
   int blocks_x = 0, blocks_y = 0;
   std::vector<std::uint32_t> texels;
@@ -57,7 +58,7 @@ struct GpuImage {
   std::uint8_t clear_stencil = 0;
 
   GpuImage() = default;
-  GpuImage(Format f, int w, int h, int s);
+  GpuImage(Format f, int w, int h, int s, int array_layers = 1);
 
   /// Before a tile's texels are read or written.
   void use(int block_index) {
@@ -76,6 +77,8 @@ struct GpuImage {
   /// Texels in place of planes; cleared tiles stay so.
   void expand_all(int jobs);
 
+  /// A tile's layers lie one after the other, each a block with its own state: so sample s of layer l is also
+  /// plane l * samples + s of the tile.
   std::size_t block_words() const { return static_cast<std::size_t>(samples * words * kBlockLanes); }
   std::uint32_t* block(int block_index) {
     return texels.data() + static_cast<std::size_t>(block_index) * block_words();
@@ -96,7 +99,13 @@ struct GpuImage {
   }
   /// Lanes of a tile that lie in the image.
   std::uint64_t lanes_inside(int block_index) const;
-  int block_index(int x, int y) const { return (y / kBlockPx) * blocks_x + x / kBlockPx; }
+  std::size_t tile_words() const { return block_words() * static_cast<std::size_t>(layers); }
+  int block_index(int x, int y, int layer = 0) const {
+    return ((y / kBlockPx) * blocks_x + x / kBlockPx) * layers + layer;
+  }
+  /// Pixel of a block's corner.
+  int block_x(int block_index) const { return block_index / layers % blocks_x * kBlockPx; }
+  int block_y(int block_index) const { return block_index / layers / blocks_x * kBlockPx; }
   std::size_t word_index(int x, int y, int sample, int word) const {
     return static_cast<std::size_t>(block_index(x, y)) * block_words() +
            static_cast<std::size_t>((sample * words + word) * kBlockLanes + lane_of(x & 7, y & 7));

@@ -5,6 +5,7 @@
 
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/emulate/segment.h"
+#include "pipeline/raster/clip.h"
 
 namespace hwsim::pipeline {
 
@@ -17,6 +18,8 @@ struct PassContext {
   int width = 0, height = 0, samples = 1;
   int bins_x = 0, bins_y = 0;
   std::span<const SamplePosition> positions;
+  std::span<const ViewportShift> viewports;  ///< at least one
+  GuardBand band;
   int sample_min_x = 0, sample_min_y = 0, sample_max_x = 0, sample_max_y = 0;
   ResourceView resources;
   std::vector<DrawInfo> draws;
@@ -39,6 +42,8 @@ struct BinWorker {
   std::array<std::int32_t, kBatchQuads> block;  ///< tile of each quad in the targets
   std::array<std::int32_t, kBatchQuads> quad_in_block;
   std::array<QuadSamples, kBatchQuads> samples;
+  std::array<QuadSamples, kBatchQuads>
+      primitive_samples;                              ///< before depth and stencil, where they are asked for
   FragmentBatch sample_batch;                         ///< sample-rate shading: the quads that have the sample
   std::array<std::int32_t, kBatchQuads> sample_quad;  ///< of each quad of sample_batch: its number in `batch`
 
@@ -53,17 +58,22 @@ struct BinWorker {
   const FragmentProgram* program = nullptr;
   const void* uniforms = nullptr;
   bool late_z = false;
+  bool early_reject =
+      false;  ///< with late_z: samples that fail the depth test already are dropped before shading
 
   PassCounters& counters() { return chunks[current_chunk]; }
 };
 
-/// Rasterizes, tests, shades and writes one screen bin: all triangles of the segment, in order.
+/// Rasterizes, tests, shades and writes one screen bin: all triangles of the segment, in order, layer by
+/// layer.
 void run_bin(const PassContext& context, const Segment& segment, int bin, BinWorker& worker);
 /// Shades one screen bin of a full-screen pass.
 void run_full_screen_bin(const PassContext& context, int bin, BinWorker& worker);
 
 /// Whether depth and stencil are tested after the shader (techniques 0.4, gpus 10.1).
 bool tests_late(const PipelineState& state, const FragmentProgram* program);
+/// Of those that are: whether a first test, without writes, comes before the shader.
+bool rejects_early(const PipelineState& state, const FragmentProgram* program);
 
 /// Charges unfiltered texels.
 void charge_texels(const TexelCounts& texels, PassCounters& counters);

@@ -40,7 +40,7 @@ ShadedVertex place_vertex(const float (&clip)[4], const GuardBand& band, int wid
   ShadedVertex v;
   double p[4];
   for (int k = 0; k < 4; ++k) p[k] = v.clip_position[k] = clip[k];
-  v.outcode = static_cast<std::uint8_t>(frustum_outcode(clip));
+  v.outcode = static_cast<std::uint8_t>(frustum_outcode(clip, band));
   v.needs_clip = !in_guard_band(p, band);
   if (!v.needs_clip) v.screen = to_screen(p, width_px, height_px);
   return v;
@@ -51,7 +51,7 @@ PrimitiveSetup::PrimitiveSetup(const PassContext& context, const VertexSource& s
       draw_(context.draws[item.draw]),
       item_(item),
       source_(source),
-      band_(guard_band(context.width, context.height)),
+      band_(context.band),
       rules_(setup_rules(context, draw_)) {}
 
 void PrimitiveSetup::start_primitive(std::uint32_t primitive, PassCounters& counters) {
@@ -116,29 +116,48 @@ void PrimitiveSetup::append_varyings(const Vertices& v, const std::array<double,
   }
 }
 
+// Setup and rasterization once for each viewport; what comes before, once.
 void PrimitiveSetup::set_up(const ScreenVertex (&screen)[3], const Vertices& v) {
-  SetupCounters& n = counters_->setup;
-  n.in_primitives += 1;
-  RasterTriangle t;
-  switch (set_up_triangle(screen, rules_, t)) {
-    case SetupResult::backface:
-      n.culled_backface_primitives += 1;
-      return;
-    case SetupResult::zero_area:
-      n.culled_zero_area_primitives += 1;
-      return;
-    case SetupResult::sample_miss:
-      n.culled_sample_miss_primitives += 1;
-      return;
-    case SetupResult::drawn:
-      break;
+  const std::size_t layers = c_.viewports.size();
+  if (layers == 1) {
+    RasterTriangle t;
+    finish(set_up_triangle(screen, rules_, t), v, t);
+    return;
   }
-  n.out_primitives += 1;
+  std::array<RasterTriangle, kMaxViewports> triangles;
+  std::array<SetupResult, kMaxViewports> results;
+  set_up_triangle(screen, rules_, c_.viewports, std::span(triangles).first(layers),
+                  std::span(results).first(layers));
+  for (std::size_t l = 0; l < layers; ++l) finish(results[l], v, triangles[l]);
+}
+
+void PrimitiveSetup::finish(SetupResult result, const Vertices& v, RasterTriangle& t) {
+  count(result);
+  if (result != SetupResult::drawn) return;
   for (std::size_t i = 0; i < 3; ++i) t.vertex[i] = v[i];
   t.draw = item_.draw;
   t.chunk = primitive_ / c_.chunk_primitives;
   t.primitive = primitive_;
   item_.triangles.push_back(t);
+}
+
+void PrimitiveSetup::count(SetupResult result) {
+  SetupCounters& n = counters_->setup;
+  n.in_primitives += 1;
+  switch (result) {
+    case SetupResult::backface:
+      n.culled_backface_primitives += 1;
+      break;
+    case SetupResult::zero_area:
+      n.culled_zero_area_primitives += 1;
+      break;
+    case SetupResult::sample_miss:
+      n.culled_sample_miss_primitives += 1;
+      break;
+    case SetupResult::drawn:
+      n.out_primitives += 1;
+      break;
+  }
 }
 
 }  // namespace hwsim::pipeline

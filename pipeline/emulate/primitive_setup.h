@@ -39,6 +39,8 @@ class PrimitiveSetup {
   std::uint32_t own_vertices() const;
   void append_varyings(const Vertices& v, const std::array<double, 3>& weights);
   void set_up(const ScreenVertex (&screen)[3], const Vertices& v);
+  void finish(SetupResult result, const Vertices& v, RasterTriangle& triangle);
+  void count(SetupResult result);
 
   const PassContext& c_;
   const DrawInfo& draw_;

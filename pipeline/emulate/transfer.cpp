@@ -128,10 +128,11 @@ std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* sourc
   for (std::uint64_t i = 0; i < kBands; ++i) {
     PassCounters& n = chunks[i];
     for (const GpuImage* target : targets) {
-      const auto tiles =
-          static_cast<std::uint64_t>(target->blocks_x) * static_cast<std::uint64_t>(target->blocks_y);
+      const auto layers = static_cast<std::uint64_t>(target->layers);
+      const auto tiles = static_cast<std::uint64_t>(target->blocks_x) *
+                         static_cast<std::uint64_t>(target->blocks_y) * layers;
       const auto pixels =
-          static_cast<std::uint64_t>(target->width) * static_cast<std::uint64_t>(target->height);
+          static_cast<std::uint64_t>(target->width) * static_cast<std::uint64_t>(target->height) * layers;
       const std::uint64_t bytes = info(target->format).bytes;
       const auto samples = static_cast<std::uint64_t>(target->samples);
       if (pass.kind == PassKind::clear) {

@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint32_t kVertexTask = 1024;  // vertices of one parallel task
 
 // Every corner of the mesh's box outside one plane, with a margin for rounding: then so is every triangle.
-bool outside_view(const DrawInfo& draw) {
+bool outside_view(const DrawInfo& draw, const GuardBand& band) {
   const VertexProgram& program = *draw.batch->vertex;
   if (program.clip_from_world == nullptr) return false;
   const glm::mat4 clip =
@@ -29,8 +29,9 @@ bool outside_view(const DrawInfo& draw) {
     const float grown[4] = {p.x, p.y, p.z, p.w};
     int code = 0;
     for (int axis = 0; axis < 2; ++axis) {
-      if (grown[axis] < -grown[3] - margin) code |= 1 << (2 * axis);
-      if (grown[axis] > grown[3] + margin) code |= 2 << (2 * axis);
+      const float limit = grown[3] * (axis == 0 ? band.view_x : band.view_y);
+      if (grown[axis] < -limit - margin) code |= 1 << (2 * axis);
+      if (grown[axis] > limit + margin) code |= 2 << (2 * axis);
     }
     if (grown[2] < -margin) code |= 16;
     if (grown[2] > grown[3] + margin) code |= 32;
@@ -69,7 +70,6 @@ void fetch_vertices(const DrawInfo& draw, std::uint32_t first, int count, Vertex
 void shade_range(const PassContext& context, const DrawInfo& draw, std::uint32_t first, std::uint32_t count,
                  ShadedVertex* out, float* varyings, VertexBatch& batch) {
   const VertexProgram& program = *draw.batch->vertex;
-  const GuardBand band = guard_band(context.width, context.height);
   for (std::uint32_t done = 0; done < count; done += kBatchLanes) {
     const int n = static_cast<int>(std::min<std::uint32_t>(kBatchLanes, count - done));
     fetch_vertices(draw, draw.first_vertex + first + done, n, batch);
@@ -77,7 +77,8 @@ void shade_range(const PassContext& context, const DrawInfo& draw, std::uint32_t
     for (int i = 0; i < n; ++i) {
       const float clip[4] = {batch.clip_position[0][i], batch.clip_position[1][i], batch.clip_position[2][i],
                              batch.clip_position[3][i]};
-      out[done + static_cast<std::uint32_t>(i)] = place_vertex(clip, band, context.width, context.height);
+      out[done + static_cast<std::uint32_t>(i)] =
+          place_vertex(clip, context.band, context.width, context.height);
       float* to = varyings + (std::size_t{done} + static_cast<std::size_t>(i)) *
                                  static_cast<std::size_t>(program.varying_scalars);
       for (int k = 0; k < program.varying_scalars; ++k) to[k] = batch.varyings[k][i];
@@ -197,7 +198,7 @@ std::vector<std::uint32_t> count_cache_misses(const Mesh& mesh, const Mesh::Part
 std::uint64_t mark_outside(const PassContext& context, Segment& segment) {
   std::uint64_t count = 0;
   for (std::size_t i = 0; i < segment.outside.size(); ++i) {
-    segment.outside[i] = outside_view(context.draws[segment.first_draw + i]) ? 1 : 0;
+    segment.outside[i] = outside_view(context.draws[segment.first_draw + i], context.band) ? 1 : 0;
     count += segment.outside[i] != 0 ? 1 : 0;
   }
   return count;

@@ -6,7 +6,8 @@ namespace hwsim::pipeline {
 
 std::uint64_t allocated_bytes(const ImageDesc& image) {
   return static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height) *
-         static_cast<std::uint64_t>(image.samples) * info(image.format).bytes;
+         static_cast<std::uint64_t>(image.samples) * static_cast<std::uint64_t>(image.layers) *
+         info(image.format).bytes;
 }
 
 std::uint64_t allocated_bytes(const BufferDesc& buffer) { return 4 * buffer.words; }

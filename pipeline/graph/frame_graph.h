@@ -35,14 +35,15 @@ struct ImageDesc {
   int width = 0;
   int height = 0;
   int samples = 1;
+  int layers = 1;  ///< of an array image; shaders read sample s of layer l as sample l * samples + s
 };
 struct BufferDesc {
   std::string name;
   std::uint64_t words = 0;  ///< 32-bit words
 };
 
-/// Bytes as allocated: width * height * samples * bytes per element. No padding: the papers' figures have
-/// none.
+/// Bytes as allocated: width * height * samples * layers * bytes per element. No padding: the papers' figures
+/// have none.
 std::uint64_t allocated_bytes(const ImageDesc& image);
 std::uint64_t allocated_bytes(const BufferDesc& buffer);
 
@@ -67,6 +68,9 @@ struct Pass {
   PassKind kind = PassKind::draw;
   int width = 0, height = 0;  ///< viewport in pixels
   int samples = 1;            ///< raster samples
+  /// Viewport multicast (techniques 1.4): vertices are shaded once, and every primitive is rasterized into
+  /// layer l of the attachments under viewport l. Empty: one viewport, and attachments of one layer.
+  std::vector<ViewportShift> viewports;
 
   std::vector<ImageId> color;  ///< attachments of draw and full-screen passes
   ImageId depth;

@@ -26,6 +26,14 @@ enum class StencilOp : std::uint8_t {
   increment_wrap,
   decrement_wrap
 };
+/// A viewport's shift from the pass's own, in 1/256 pixel (x right, y down): the geometry moves by it.
+/// Snapped vertices shift exactly.
+struct ViewportShift {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+};
+inline constexpr std::size_t kMaxViewports = 16;
+
 enum class CullMode : std::uint8_t { none, back, front };
 enum class BlendFactor : std::uint8_t {
   zero,
@@ -82,10 +90,20 @@ struct RasterState {
   std::vector<SamplePosition> sample_positions;  ///< empty: the standard pattern of the sample count
 };
 
+/// How a fragment's coverage reaches its shader and leaves it (techniques 0.4, 1.7).
+struct CoverageState {
+  bool post_depth =
+      false;  ///< shaders read what early tests left, which must be forced; else the primitive's
+  bool override_output = false;    ///< a shader's output mask replaces the coverage; else it is ANDed
+  bool alpha_to_coverage = false;  ///< by color 0's alpha; without effect if the shader writes a mask
+  bool alpha_dither = true;        ///< of alpha to coverage, over 2x2 pixels
+};
+
 struct PipelineState {
   DepthState depth;
   StencilState stencil;
   RasterState raster;
+  CoverageState coverage;
   std::vector<BlendState> blend;  ///< one a color attachment; missing ones are opaque
   bool force_early_z = false;     ///< [earlydepthstencil]
 };

@@ -1,11 +1,16 @@
 #include "pipeline/graph/validate.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/raster/triangle.h"
 
 namespace hwsim::pipeline {
 namespace {
+
+constexpr std::size_t kMaxProgrammablePositions = 16;
+constexpr int kMaxLayers = 2048;
 
 class Validator {
  public:
@@ -39,6 +44,8 @@ class Validator {
                " pixels wide and high",
            "choose a smaller resolution or supersampling rate");
     if (image.format == Format::none) fail("G003", "image `" + image.name + "` has no format");
+    if (image.layers < 1 || image.layers > kMaxLayers)
+      fail("G001", "image " + text(image) + " must have 1 to " + std::to_string(kMaxLayers) + " layers");
     const int s = image.samples;
     if (s < 1 || s > kMaxSamples || (s & (s - 1)) != 0)
       fail("G002", "image " + text(image) + " must have 1, 2, 4, 8, 16 or 32 samples");
@@ -81,6 +88,11 @@ class Validator {
     if (s < 1 || s > kMaxSamples || (s & (s - 1)) != 0)
       fail("G002", "pass `" + pass.name + "` rasterizes " + std::to_string(s) +
                        " samples, must be 1, 2, 4, 8, 16 or 32");
+    else if (s > features_.native_msaa_max && pass.depth == ImageId{} && pass.color.empty())
+      fail("G006",
+           "pass `" + pass.name + "` rasterizes " + std::to_string(s) + " samples, this GPU has " +
+               std::to_string(features_.native_msaa_max),
+           "gpu.features.native_msaa_max = " + std::to_string(s) + " makes them native");
   }
 
   void check_read(const Pass& pass, ImageId id) {
@@ -98,7 +110,31 @@ class Validator {
 
   void mark_written(ImageId id) { written_[static_cast<std::size_t>(id.index)] = 1; }
 
+  void check_viewports(const Pass& pass) {
+    if (pass.viewports.empty()) return;
+    if (!features_.viewport_multicast)
+      fail("G006", "pass `" + pass.name + "` sends primitives to several viewports, which this GPU cannot",
+           "gpu.features.viewport_multicast = true");
+    const bool far = std::any_of(pass.viewports.begin(), pass.viewports.end(), [](ViewportShift shift) {
+      return std::max(std::abs(shift.x), std::abs(shift.y)) > kSubpixelUnits;
+    });
+    if (pass.kind != PassKind::draw || pass.viewports.size() > kMaxViewports || far)
+      fail("G011",
+           "pass `" + pass.name + "` has " + std::to_string(pass.viewports.size()) +
+               " viewports: draws may have up to 16, shifted by up to one pixel",
+           "draw the layers in passes of their own");
+  }
+
+  // Layer l of every attachment is written under viewport l.
+  void check_layers(const Pass& pass, const ImageDesc& image) {
+    const int layers = pass.viewports.empty() ? 1 : static_cast<int>(pass.viewports.size());
+    if (image.layers != layers)
+      fail("G011", "pass `" + pass.name + "` draws " + std::to_string(layers) + " layers into image " +
+                       text(image) + " of " + std::to_string(image.layers));
+  }
+
   void check_attachments(const Pass& pass) {
+    check_viewports(pass);
     if (pass.color.size() > kMaxColorTargets)
       fail("G007", "pass `" + pass.name + "` has " + std::to_string(pass.color.size()) +
                        " color attachments, at most " + std::to_string(kMaxColorTargets) + " are supported");
@@ -108,13 +144,7 @@ class Validator {
       if (info(image.format).is_depth)
         fail("G003",
              "pass `" + pass.name + "` writes color to image " + text(image) + ", which has a depth format");
-      // Also on GPUs with target-independent raster: the emulator writes one color sample for each raster
-      // sample.
-      if (image.samples != pass.samples)
-        fail("G002",
-             "pass `" + pass.name + "` rasterizes " + std::to_string(pass.samples) + " samples into image " +
-                 text(image),
-             "give the color image as many samples as the pass rasterizes");
+      if (image.samples != pass.samples) check_mixed_samples(pass, image);
       mark_written(id);
     }
     if (pass.depth) check_depth(pass);
@@ -126,7 +156,18 @@ class Validator {
     for (const DrawBatch& batch : pass.batches) check_batch(pass, batch);
   }
 
+  // Fewer color than raster samples: each color sample stands for a block of raster samples.
+  void check_mixed_samples(const Pass& pass, const ImageDesc& image) {
+    const std::string message = "pass `" + pass.name + "` rasterizes " + std::to_string(pass.samples) +
+                                " samples into image " + text(image);
+    if (image.samples > pass.samples || pass.samples % image.samples != 0)
+      fail("G002", message, "give the color image as many samples as the pass rasterizes, or a divisor");
+    else if (!features_.target_independent_raster)
+      fail("G006", message + ", which this GPU cannot", "gpu.features.target_independent_raster = true");
+  }
+
   void check_size(const Pass& pass, const ImageDesc& image) {
+    check_layers(pass, image);
     if (image.width != pass.width || image.height != pass.height)
       fail("G001", "pass `" + pass.name + "` of " + std::to_string(pass.width) + "x" +
                        std::to_string(pass.height) + " pixels has attachment " + text(image));
@@ -176,9 +217,15 @@ class Validator {
     if (positions != 0 && positions != static_cast<std::size_t>(pass.samples))
       fail("G002", "pass `" + pass.name + "` sets " + std::to_string(positions) + " sample positions for " +
                        std::to_string(pass.samples) + " samples");
+    if (positions > kMaxProgrammablePositions ||
+        std::any_of(state.raster.sample_positions.begin(), state.raster.sample_positions.end(),
+                    [](SamplePosition p) { return std::max(p.x, p.y) > 7 || std::min(p.x, p.y) < -8; }))
+      fail("G002", "pass `" + pass.name + "` sets sample positions that no GPU can",
+           "at most 16, each -8 to 7 sixteenths of a pixel from the center");
     if (state.raster.conservative && !features_.conservative_raster)
       fail("G006", "pass `" + pass.name + "` rasterizes conservatively, which this GPU cannot",
            "gpu.features.conservative_raster = true");
+    check_coverage(pass, state);
     const bool needs_depth = state.depth.test || state.depth.write || state.stencil.test;
     if (needs_depth && !pass.depth)
       fail("G007", "pass `" + pass.name + "` tests or writes depth or stencil without a depth attachment");
@@ -192,10 +239,38 @@ class Validator {
     }
   }
 
+  void check_coverage(const Pass& pass, const PipelineState& state) {
+    const CoverageState& coverage = state.coverage;
+    if (coverage.post_depth && !features_.post_depth_coverage)
+      fail("G006", "pass `" + pass.name + "` reads the coverage after depth tests, which this GPU cannot",
+           "gpu.features.post_depth_coverage = true");
+    if (coverage.post_depth && (!state.force_early_z || !pass.depth))
+      fail("G010", "pass `" + pass.name + "` reads the coverage after depth tests that are not early",
+           "bind a depth image and force early tests");
+    if (coverage.override_output && !features_.coverage_override)
+      fail("G006", "pass `" + pass.name + "` replaces coverage by a shader's mask, which this GPU cannot",
+           "gpu.features.coverage_override = true");
+    if (coverage.override_output && (state.raster.sample_rate || coverage.alpha_to_coverage))
+      fail("G010",
+           "pass `" + pass.name + "` replaces coverage by a shader's mask, and runs the shader for each " +
+               "sample or takes coverage from alpha",
+           "a mask that replaces the coverage is one a pixel");
+  }
+
+  void check_outputs(const Pass& pass, const FragmentProgram& program, const CoverageState& coverage) {
+    if (coverage.override_output && !program.writes_mask)
+      fail("G010", "pass `" + pass.name + "`: fragment program `" + program.name +
+                       "` has no mask to replace coverage");
+    if (coverage.alpha_to_coverage && program.color_outputs < 1)
+      fail("G010", "pass `" + pass.name + "`: fragment program `" + program.name +
+                       "` has no alpha to take coverage from");
+  }
+
   void check_program(const Pass& pass, const FragmentProgram* program, const PipelineState& state,
                      int varyings) {
     if (program == nullptr) return;
     if (pass.kind == PassKind::full_screen) check_state(pass, state);
+    check_outputs(pass, *program, state.coverage);
     if (program->varying_scalars != varyings)
       fail("G007", "pass `" + pass.name + "`: fragment program `" + program->name + "` reads " +
                        std::to_string(program->varying_scalars) + " varyings, the vertex program writes " +
@@ -210,6 +285,9 @@ class Validator {
     if (pass.compute == nullptr) fail("G007", "compute pass `" + pass.name + "` has no program");
     if (pass.groups_x < 1 || pass.groups_y < 1)
       fail("G001", "compute pass `" + pass.name + "` has no groups");
+    if (pass.targets.size() > kMaxColorTargets)
+      fail("G007", "compute pass `" + pass.name + "` stores to " + std::to_string(pass.targets.size()) +
+                       " images, at most " + std::to_string(kMaxColorTargets) + " are supported");
     for (const ImageId id : pass.targets)
       mark_written(id);  // multisampled ones stand for flat buffers of samples
   }
@@ -224,6 +302,11 @@ class Validator {
     if (from.width != to.width || from.height != to.height)
       fail("G001",
            "pass `" + pass.name + "` from image " + text(from) + " to image " + text(to) + ": sizes differ");
+    if (from.layers != to.layers || (pass.kind == PassKind::resolve && from.layers > 1))
+      fail("G009",
+           "pass `" + pass.name + "` transfers image " + text(from) + " of " + std::to_string(from.layers) +
+               " layers to image " + text(to) + " of " + std::to_string(to.layers),
+           "a resolve does not mix layers: merge them in a shader");
     if (pass.kind == PassKind::resolve) {
       if (from.samples < 2 || to.samples != 1)
         fail("G009", "pass `" + pass.name + "` resolves image " + text(from) + " to image " + text(to) +
@@ -244,8 +327,8 @@ class Validator {
       return;
     }
     const ImageDesc& image = graph_.image(graph_.output());
-    if (image.samples != 1)
-      fail("G008", "output image " + text(image) + " is multisampled", "resolve it first");
+    if (image.samples != 1 || image.layers != 1)
+      fail("G008", "output image " + text(image) + " is multisampled or has layers", "resolve it first");
     if (info(image.format).is_depth) fail("G008", "output image " + text(image) + " has a depth format");
     if (written_[static_cast<std::size_t>(graph_.output().index)] == 0)
       fail("G005", "no pass writes the output image " + text(image));

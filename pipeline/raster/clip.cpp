@@ -39,12 +39,16 @@ ClipVertex cut(const ClipVertex& inside, const ClipVertex& outside, double d_ins
 
 }  // namespace
 
-GuardBand guard_band(int width_px, int height_px) {
-  // x_screen = (x/w / 2 + 1/2) * width; one pixel of margin for snapping. y points up in clip space, down on
-  // screen.
+GuardBand guard_band(int width_px, int height_px, int margin_px) {
+  // x_screen = (x/w / 2 + 1/2) * width; one pixel of margin for snapping, and that of the viewports. y points
+  // up in clip space, down on screen.
   const auto to_ndc = [](double px, int size) { return 2.0 * px / size - 1.0; };
-  return {to_ndc(kGuardBandMinPx + 1, width_px), to_ndc(kGuardBandMaxPx - 1, width_px),
-          -to_ndc(kGuardBandMaxPx - 1, height_px), -to_ndc(kGuardBandMinPx + 1, height_px)};
+  const auto view = [&](int size) {
+    return 1.0f + 2.0f * static_cast<float>(margin_px) / static_cast<float>(size);
+  };
+  const int low = kGuardBandMinPx + 1 + margin_px, high = kGuardBandMaxPx - 1 - margin_px;
+  return {to_ndc(low, width_px),   to_ndc(high, width_px), -to_ndc(high, height_px),
+          -to_ndc(low, height_px), view(width_px),         view(height_px)};
 }
 
 int clip_triangle(const std::array<ClipVertex, 3>& triangle, const GuardBand& band,

@@ -64,4 +64,31 @@ std::span<const SamplePosition> standard_sample_positions(int samples) {
   }
 }
 
+MulticastPattern multicast_pattern(int samples) {
+  MulticastPattern pattern;
+  for (const P p : k8) {
+    const auto squeezed = [](int v) { return static_cast<std::int8_t>((v + 7) / 2 - 8); };
+    pattern.positions.push_back({squeezed(p.x), samples == 32 ? squeezed(p.y) : p.y});
+  }
+  switch (samples) {
+    case 16:  // the left half; the second layer reaches the right one, a sixteenth higher: 16 rooks
+      pattern.viewports = {{0, 0}, {-128, 16}};
+      return pattern;
+    case 32:
+      pattern.viewports = {{0, 0}, {-128, 0}, {0, -128}, {-128, -128}};
+      return pattern;
+    default:
+      throw std::invalid_argument("no multicast pattern of " + std::to_string(samples) + " samples");
+  }
+}
+
+std::vector<SamplePosition> effective_positions(const MulticastPattern& pattern) {
+  std::vector<SamplePosition> all;
+  for (const ViewportShift shift : pattern.viewports)
+    for (const P p : pattern.positions)
+      all.push_back(
+          {static_cast<std::int8_t>(p.x - shift.x / 16), static_cast<std::int8_t>(p.y - shift.y / 16)});
+  return all;
+}
+
 }  // namespace hwsim::pipeline

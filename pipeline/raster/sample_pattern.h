@@ -13,4 +13,17 @@ inline constexpr int kMaxSamples = 32;
 /// counts.
 std::span<const SamplePosition> standard_sample_positions(int samples);
 
+/// How passes of eight samples reach more (techniques 1.4): every layer has the same positions, squeezed into
+/// a part of the pixel, under a viewport of its own.
+struct MulticastPattern {
+  std::vector<SamplePosition> positions;  ///< of each layer
+  std::vector<ViewportShift> viewports;   ///< one a layer
+};
+/// For 16 or 32 samples. Throws std::invalid_argument for other counts.
+MulticastPattern multicast_pattern(int samples);
+
+/// Where the samples of all layers lie in the pixel, in order of layer and sample: against the viewports'
+/// shifts. For 32 samples these are the standard positions.
+std::vector<SamplePosition> effective_positions(const MulticastPattern& pattern);
+
 }  // namespace hwsim::pipeline

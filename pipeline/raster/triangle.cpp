@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 
 namespace hwsim::pipeline {
 namespace {
@@ -40,23 +41,26 @@ void sample_bounds(std::int32_t low, std::int32_t high, int sample_low, int samp
   last = (high - to_first_sample) >> kSubpixelBits;
 }
 
-bool set_bounds(const ScreenVertex (&v)[3], const SetupRules& rules, RasterTriangle& t) {
+/// Pixels that can hold covered samples, not yet clipped to the viewport.
+struct PixelBounds {
+  int first_x, last_x, first_y, last_y;
+};
+
+PixelBounds find_bounds(const ScreenVertex (&v)[3], const SetupRules& rules) {
   const auto [low_x, high_x] = std::minmax({v[0].x, v[1].x, v[2].x});
   const auto [low_y, high_y] = std::minmax({v[0].y, v[1].y, v[2].y});
-  int first_x, last_x, first_y, last_y;
-  if (rules.conservative) {
-    first_x = (low_x - 1) >> kSubpixelBits;
-    last_x = high_x >> kSubpixelBits;
-    first_y = (low_y - 1) >> kSubpixelBits;
-    last_y = high_y >> kSubpixelBits;
-  } else {
-    sample_bounds(low_x, high_x, rules.sample_min_x, rules.sample_max_x, first_x, last_x);
-    sample_bounds(low_y, high_y, rules.sample_min_y, rules.sample_max_y, first_y, last_y);
-  }
-  first_x = std::max(first_x, 0);
-  first_y = std::max(first_y, 0);
-  last_x = std::min(last_x, rules.width_px - 1);
-  last_y = std::min(last_y, rules.height_px - 1);
+  if (rules.conservative)
+    return {(low_x - 1) >> kSubpixelBits, high_x >> kSubpixelBits, (low_y - 1) >> kSubpixelBits,
+            high_y >> kSubpixelBits};
+  PixelBounds b;
+  sample_bounds(low_x, high_x, rules.sample_min_x, rules.sample_max_x, b.first_x, b.last_x);
+  sample_bounds(low_y, high_y, rules.sample_min_y, rules.sample_max_y, b.first_y, b.last_y);
+  return b;
+}
+
+bool set_bounds(const PixelBounds& b, const SetupRules& rules, RasterTriangle& t) {
+  const int first_x = std::max(b.first_x, 0), first_y = std::max(b.first_y, 0);
+  const int last_x = std::min(b.last_x, rules.width_px - 1), last_y = std::min(b.last_y, rules.height_px - 1);
   if (first_x > last_x || first_y > last_y) return false;
   t.min_x = static_cast<std::int16_t>(first_x);
   t.min_y = static_cast<std::int16_t>(first_y);
@@ -77,15 +81,13 @@ PlaneEquation make_plane(const Gradients& g, double v0, double v1, double v2) {
 }
 
 void set_planes(const ScreenVertex& v0, const ScreenVertex& v1, const ScreenVertex& v2, std::int64_t area2,
-                RasterTriangle& t) {
-  t.reference_x = t.min_x;
-  t.reference_y = t.min_y;
+                int reference_x, int reference_y, RasterTriangle& t) {
   constexpr double kPx = 1.0 / kSubpixelUnits;
   // Twice the area in 1/256 px squared; lambda1 = cross(p - v0, v2 - v0) / cross(v1 - v0, v2 - v0).
   const double scale = kSubpixelUnits / static_cast<double>(area2);
   Gradients g;
-  g.x0 = v0.x * kPx - t.reference_x;
-  g.y0 = v0.y * kPx - t.reference_y;
+  g.x0 = v0.x * kPx - reference_x;
+  g.y0 = v0.y * kPx - reference_y;
   g.l1_dx = static_cast<double>(v2.y - v0.y) * scale;
   g.l1_dy = -static_cast<double>(v2.x - v0.x) * scale;
   g.l2_dx = -static_cast<double>(v1.y - v0.y) * scale;
@@ -99,22 +101,64 @@ void set_planes(const ScreenVertex& v0, const ScreenVertex& v1, const ScreenVert
 }  // namespace
 
 SetupResult set_up_triangle(const ScreenVertex (&v)[3], const SetupRules& rules, RasterTriangle& t) {
+  constexpr ViewportShift kNone{};
+  SetupResult result = SetupResult::drawn;
+  set_up_triangle(v, rules, std::span(&kNone, 1), std::span(&t, 1), std::span(&result, 1));
+  return result;
+}
+
+void set_up_triangle(const ScreenVertex (&v)[3], const SetupRules& rules,
+                     std::span<const ViewportShift> viewports, std::span<RasterTriangle> triangles,
+                     std::span<SetupResult> results) {
   const std::int64_t area2 =
       std::int64_t{v[1].x - v[0].x} * (v[2].y - v[0].y) - std::int64_t{v[2].x - v[0].x} * (v[1].y - v[0].y);
-  if (area2 == 0) return SetupResult::zero_area;
-  t.front_facing = area2 < 0;  // y down: counterclockwise with y up is a negative area
-  if ((rules.cull_back && !t.front_facing) || (rules.cull_front && t.front_facing))
-    return SetupResult::backface;
-  if (!set_bounds(v, rules, t)) return SetupResult::sample_miss;
-  const int second =
-      area2 > 0 ? 1 : 2;  // clockwise on screen: the inside is where the edge functions are positive
-  const int third = 3 - second;
-  set_edge(v[0], v[second], 0, t);
-  set_edge(v[second], v[third], 1, t);
-  set_edge(v[third], v[0], 2, t);
-  if (rules.conservative) grow_edges(t);
-  set_planes(v[0], v[1], v[2], area2, t);
-  return SetupResult::drawn;
+  const bool front_facing = area2 < 0;  // y down: counterclockwise with y up is a negative area
+  const bool culled = (rules.cull_back && !front_facing) || (rules.cull_front && front_facing);
+  if (area2 == 0 || culled) {
+    std::ranges::fill(results, area2 == 0 ? SetupResult::zero_area : SetupResult::backface);
+    return;
+  }
+  // Clockwise on screen: the inside is where the edge functions are positive.
+  const std::size_t second = area2 > 0 ? 1 : 2;
+  const std::size_t third = 3 - second;
+  int reference_x = std::numeric_limits<int>::max(), reference_y = reference_x;
+  bool any = false;
+  for (std::size_t l = 0; l < viewports.size(); ++l) {
+    const ViewportShift shift = viewports[l];
+    ScreenVertex moved[3] = {v[0], v[1], v[2]};
+    for (ScreenVertex& vertex : moved) {
+      vertex.x += shift.x;
+      vertex.y += shift.y;
+    }
+    const PixelBounds bounds = find_bounds(moved, rules);
+    reference_x = std::min(reference_x, bounds.first_x);
+    reference_y = std::min(reference_y, bounds.first_y);
+    RasterTriangle& t = triangles[l];
+    results[l] = set_bounds(bounds, rules, t) ? SetupResult::drawn : SetupResult::sample_miss;
+    if (results[l] != SetupResult::drawn) continue;
+    any = true;
+    set_edge(moved[0], moved[second], 0, t);
+    set_edge(moved[second], moved[third], 1, t);
+    set_edge(moved[third], moved[0], 2, t);
+    if (rules.conservative) grow_edges(t);
+    t.front_facing = front_facing;
+    t.layer = static_cast<std::int32_t>(l);
+  }
+  if (!any) return;
+  reference_x = std::max(reference_x, 0);
+  reference_y = std::max(reference_y, 0);
+  RasterTriangle planes;
+  set_planes(v[0], v[1], v[2], area2, reference_x, reference_y, planes);
+  for (std::size_t l = 0; l < viewports.size(); ++l) {
+    if (results[l] != SetupResult::drawn) continue;
+    RasterTriangle& t = triangles[l];
+    t.z = planes.z;
+    t.inv_w = planes.inv_w;
+    t.l1_w = planes.l1_w;
+    t.l2_w = planes.l2_w;
+    t.reference_x = static_cast<float>(reference_x) + static_cast<float>(viewports[l].x) / kSubpixelUnits;
+    t.reference_y = static_cast<float>(reference_y) + static_cast<float>(viewports[l].y) / kSubpixelUnits;
+  }
 }
 
 }  // namespace hwsim::pipeline

@@ -1,6 +1,9 @@
 #pragma once
 // A triangle ready for rasterization, and its set-up from snapped vertices.
 #include <cstdint>
+#include <span>
+
+#include "pipeline/graph/pipeline_state.h"
 
 namespace hwsim::pipeline {
 
@@ -21,8 +24,8 @@ struct ScreenVertex {
   float inv_w = 1.0f;
 };
 
-/// Value at pixel coordinates (x, y) relative to the triangle's reference pixel's top left corner:
-/// (base + ddy * y) + ddx * x, in single precision and in this order everywhere.
+/// Value at pixel coordinates (x, y) relative to the triangle's reference point: (base + ddy * y) + ddx * x,
+/// in single precision and in this order everywhere.
 struct PlaneEquation {
   float base = 0.0f, ddx = 0.0f, ddy = 0.0f;
 };
@@ -33,7 +36,9 @@ struct RasterTriangle {
   std::int32_t a[3], b[3];
   std::int64_t c[3];
   std::int16_t min_x, min_y, max_x, max_y;  ///< pixels whose samples can be inside, clipped to the viewport
-  std::int32_t reference_x, reference_y;    ///< pixel
+  /// The top left corner of a pixel, px; shifted with the viewport, so that all layers of a multicast pass
+  /// evaluate the same planes at the same points. Multiples of 1/256 below 2^15: differences are exact.
+  float reference_x, reference_y;
   PlaneEquation z;
   PlaneEquation inv_w;       ///< 1/w
   PlaneEquation l1_w, l2_w;  ///< barycentric coordinates of vertices 1 and 2, over w
@@ -41,6 +46,7 @@ struct RasterTriangle {
   std::uint32_t draw;        ///< index into the pass's flat list of draws
   std::uint32_t chunk;       ///< index of the chunk of work
   std::uint32_t primitive;   ///< number of the triangle in the pass, in submission order
+  std::int32_t layer;        ///< of the attachments
   bool front_facing;
 };
 
@@ -55,5 +61,11 @@ struct SetupRules {
 
 /// Fills edges, bounds and planes of `triangle`; front faces turn counterclockwise seen with y up (glTF).
 SetupResult set_up_triangle(const ScreenVertex (&v)[3], const SetupRules& rules, RasterTriangle& triangle);
+
+/// The same for each viewport, at most kMaxViewports. Planes are set up once, from the unshifted vertices:
+/// the layers together are bit for bit a rasterization at all their sample positions.
+void set_up_triangle(const ScreenVertex (&v)[3], const SetupRules& rules,
+                     std::span<const ViewportShift> viewports, std::span<RasterTriangle> triangles,
+                     std::span<SetupResult> results);
 
 }  // namespace hwsim::pipeline

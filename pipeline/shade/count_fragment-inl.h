@@ -33,6 +33,7 @@ class CountFragment {
   I pixel_x() { return integer(); }
   I pixel_y() { return integer(); }
   int sample_index() const { return -1; }
+  int layer() const { return 0; }
   I coverage() {
     reads_coverage_ = true;
     return integer();
@@ -93,6 +94,10 @@ class CountFragment {
     made(OpKind::store, x, y);
   }
   void discard(M mask) { made(OpKind::alu, mask); }
+  void output_mask(I mask) {
+    made(OpKind::output, mask);
+    writes_mask_ = true;
+  }
   void output(int target, const Vec4<F>& color) {
     made(OpKind::output, color.x, color.y, color.z);
     made(OpKind::output, color.w);
@@ -104,6 +109,7 @@ class CountFragment {
   int color_outputs() const { return color_outputs_; }
   bool writes_storage() const { return writes_storage_; }
   bool reads_coverage() const { return reads_coverage_; }
+  bool writes_mask() const { return writes_mask_; }
 
  private:
   CountValue made(OpKind kind, CountValue a = {}, CountValue b = {}, CountValue c = {}) {
@@ -128,6 +134,7 @@ class CountFragment {
   int color_outputs_ = 0;
   bool reads_coverage_ = false;
   bool writes_storage_ = false;
+  bool writes_mask_ = false;
 };
 
 /// Counts a shader and fills a program's costs.
@@ -144,6 +151,7 @@ FragmentProgram describe_fragment_shader(std::string name, void (*run)(FragmentB
   program.color_outputs = counter.color_outputs();
   program.reads_coverage = counter.reads_coverage();
   program.writes_storage = counter.writes_storage();
+  program.writes_mask = counter.writes_mask();
   return program;
 }
 

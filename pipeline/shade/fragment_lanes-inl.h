@@ -35,7 +35,7 @@ HWY_INLINE LaneI texel_index(const GpuImage& image, LaneI x, LaneI y, LaneI samp
   const LaneI lane = (cx & LaneI(1)) | shift_left<1>(cy & LaneI(1)) | shift_left<1>(cx & LaneI(2)) |
                      shift_left<2>(cy & LaneI(2)) | shift_left<2>(cx & LaneI(4)) |
                      shift_left<3>(cy & LaneI(4));
-  return block * LaneI(static_cast<std::int32_t>(image.block_words())) +
+  return block * LaneI(static_cast<std::int32_t>(image.tile_words())) +
          shift_left<6>(sample * LaneI(image.words)) + lane;
 }
 
@@ -63,7 +63,8 @@ HWY_INLINE void track_texels(const ResourceView& resources, int slot, LaneI x, L
   const std::int32_t bytes = info(image.format).bytes;  // 64 texels of it are as many lines
   const LaneI line =
       LaneI(static_cast<std::int32_t>(resources.image_first_line[static_cast<std::size_t>(slot)])) +
-      (block * LaneI(image.samples) + sample) * LaneI(bytes) + shift_right<6>(lane * LaneI(bytes));
+      (block * LaneI(image.samples * image.layers) + sample) * LaneI(bytes) +
+      shift_right<6>(lane * LaneI(bytes));
   track_lines(*resources.tracker, line, lanes, first_lane, static_cast<std::uint32_t>(bytes));
 }
 
@@ -101,6 +102,7 @@ class FragmentLanes {
   I pixel_x() const { return load(batch_.pixel_x.data() + first_); }
   I pixel_y() const { return load(batch_.pixel_y.data() + first_); }
   int sample_index() const { return batch_.sample_index; }
+  int layer() const { return batch_.layer; }  ///< of a multicast pass
   I coverage() const { return load(reinterpret_cast<const std::int32_t*>(batch_.coverage.data()) + first_); }
   int first_lane() const { return first_; }
   FragmentBatch& batch() { return batch_; }
@@ -221,6 +223,10 @@ class FragmentLanes {
 
   void discard(M mask) {
     batch_.discarded_lanes |= static_cast<std::uint64_t>(mask_bits(mask & active_ & live_)) << first_;
+  }
+  /// Samples to keep, or to write (CoverageState).
+  void output_mask(I mask) {
+    store(mask, reinterpret_cast<std::int32_t*>(batch_.output_mask.data()) + first_);
   }
   void output(int target, const Vec4<F>& color) {
     store(color.x, batch_.color[target][0] + first_);

@@ -56,6 +56,7 @@ struct FragmentProgram {
   bool can_discard = false;  ///< depth writes wait for the shader unless early tests are forced
   bool writes_storage = false;
   bool reads_coverage = false;  ///< asks for its lanes' covered samples
+  bool writes_mask = false;     ///< gives each lane a sample mask (pipeline_state.h, CoverageState)
 };
 
 struct ComputeProgram {

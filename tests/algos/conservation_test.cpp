@@ -69,7 +69,7 @@ void check_pass(const FrameGraph& graph, const Pass& pass, const PassWork& work)
       std::uint64_t tiles = 0;
       for (const pipeline::ImageId id : pass.targets)
         tiles += product((graph.image(id).width + 7) / 8, (graph.image(id).height + 7) / 8,
-                         graph.image(id).samples);
+                         graph.image(id).samples * graph.image(id).layers);
       EXPECT_EQ(n.fe.cleared_tiles, tiles);
       break;
     }
@@ -98,10 +98,10 @@ TEST_P(Conservation, HoldsInEveryPassOnEveryGeneratedScene) {
     const FrameSetup setup{GetParam(), generator.name, 320, 180};
     SCOPED_TRACE(generator.name);
     const FrameGraph graph = build_graph(setup);
-    const pipeline::CompiledGraph compiled = pipeline::compile(graph, GpuFeatures{}, FunctionalConfig{});
+    const pipeline::CompiledGraph compiled = pipeline::compile(graph, test_features(), FunctionalConfig{});
     pipeline::EmulationOptions options;
     options.jobs = 2;
-    const pipeline::Emulation e = pipeline::emulate(graph, GpuFeatures{}, FunctionalConfig{}, options);
+    const pipeline::Emulation e = pipeline::emulate(graph, test_features(), FunctionalConfig{}, options);
     ASSERT_EQ(e.trace.passes.size(), compiled.order.size());
     for (std::size_t i = 0; i < compiled.order.size(); ++i) {
       SCOPED_TRACE(e.trace.passes[i].name);

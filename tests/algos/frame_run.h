@@ -35,6 +35,19 @@ inline std::shared_ptr<const pipeline::Scene> generated_scene(const std::string&
   return scene;
 }
 
+/// Everything but native sample counts beyond 8: so techniques take the paths that need features.
+inline GpuFeatures test_features() {
+  GpuFeatures features;
+  features.target_independent_raster = true;
+  features.post_depth_coverage = true;
+  features.coverage_override = true;
+  features.viewport_multicast = true;
+  features.programmable_sample_positions = true;
+  features.conservative_raster = true;
+  features.float_atomics = true;
+  return features;
+}
+
 struct FrameSetup {
   std::string technique, scene;
   int width_px = 320, height_px = 180;
@@ -47,11 +60,12 @@ inline pipeline::FrameGraph build_graph(const FrameSetup& setup) {
   request.height_px = setup.height_px;
   request.shadow_map_px = 512;
   request.point_lights = 8;
+  request.features = test_features();
   return algos::build_frame(algos::parse_technique(setup.technique), request);
 }
 
 inline pipeline::Emulation run_frame(const FrameSetup& setup, const pipeline::EmulationOptions& options) {
-  return pipeline::emulate(build_graph(setup), GpuFeatures{}, FunctionalConfig{}, options);
+  return pipeline::emulate(build_graph(setup), test_features(), FunctionalConfig{}, options);
 }
 
 /// Empty, or the first thing that differs.

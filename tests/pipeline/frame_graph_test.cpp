@@ -224,6 +224,76 @@ TEST(Validate, G006Features) {
             "G006");
 }
 
+TEST(Validate, MixedSamplesNeedTheFeatureAndADivisor) {
+  const auto mixed = [](Draft& d, int raster, int color) {
+    d.features.native_msaa_max = 16;
+    Pass& pass = d.draw();
+    pass.samples = raster;
+    pass.color = {d.graph.add_image({"mixed", Format::rgba8_unorm, 16, 16, color})};
+    pass.depth = d.graph.add_image({"samples", Format::d24_unorm_s8, 16, 16, raster});
+  };
+  EXPECT_EQ(codes_of([&](Draft& d) { mixed(d, 8, 2); }), "G006");
+  const auto with_feature = [&](int raster, int color) {
+    return codes_of([&](Draft& d) {
+      d.features.target_independent_raster = true;
+      mixed(d, raster, color);
+    });
+  };
+  EXPECT_EQ(with_feature(8, 2), "");
+  EXPECT_EQ(with_feature(16, 1), "");
+  EXPECT_EQ(with_feature(2, 8), "G002");
+}
+
+TEST(Validate, MulticastNeedsTheFeatureAndLayersToWrite) {
+  const auto multicast = [](bool feature, std::vector<ViewportShift> viewports, int layers) {
+    return codes_of([&](Draft& d) {
+      d.features.viewport_multicast = feature;
+      Pass& pass = d.draw();
+      pass.viewports = std::move(viewports);
+      pass.color = {d.graph.add_image({"array", Format::rgba8_unorm, 16, 16, 1, layers})};
+      pass.depth = {};
+    });
+  };
+  EXPECT_EQ(multicast(true, {{0, 0}, {-128, 16}}, 2), "");
+  EXPECT_EQ(multicast(false, {{0, 0}, {-128, 16}}, 2), "G006");
+  EXPECT_EQ(multicast(true, {{0, 0}, {-128, 16}}, 3), "G011");
+  EXPECT_EQ(multicast(true, {}, 2), "G011");
+  EXPECT_EQ(multicast(true, {{0, 0}, {257, 0}}, 2), "G011");
+  EXPECT_EQ(multicast(true, std::vector<ViewportShift>(17), 17), "G011");
+  EXPECT_EQ(codes_of([](Draft& d) { d.graph.add_image({"none", Format::rgba8_unorm, 4, 4, 1, 0}); }), "G001");
+}
+
+TEST(Validate, CoverageStates) {
+  const auto spoil = [](bool features, auto&& change) {
+    return codes_of([&](Draft& d) {
+      if (features) d.features = test::every_feature();
+      change(d.draw().batches.front());
+    });
+  };
+  const auto post_depth = [](DrawBatch& b) {
+    b.state.coverage.post_depth = true;
+    b.state.force_early_z = true;
+  };
+  EXPECT_EQ(spoil(false, post_depth), "G006");
+  EXPECT_EQ(spoil(true, post_depth), "");
+  EXPECT_EQ(spoil(true, [](DrawBatch& b) { b.state.coverage.post_depth = true; }), "G010");
+  EXPECT_EQ(spoil(true, [](DrawBatch& b) { b.state.coverage.override_output = true; }), "G010");
+  FragmentProgram program = test::constant_program();
+  program.writes_mask = true;
+  const auto replace = [&](DrawBatch& b) {
+    b.fragment = &program;
+    b.state.coverage.override_output = true;
+  };
+  EXPECT_EQ(spoil(false, replace), "G006");
+  EXPECT_EQ(spoil(true, replace), "");
+  EXPECT_EQ(spoil(true,
+                  [&](DrawBatch& b) {
+                    replace(b);
+                    b.state.raster.sample_rate = true;
+                  }),
+            "G010");
+}
+
 TEST(Validate, G007Programs) {
   EXPECT_EQ(codes_of([](Draft& d) { d.draw().batches.front().vertex = nullptr; }), "G007");
   EXPECT_EQ(codes_of([](Draft& d) { d.draw().batches.front().fragment = nullptr; }), "G007");

@@ -85,7 +85,8 @@ inline const pipeline::FragmentProgram& primitive_program() {
 }
 
 /// Full-screen over an image `samples` times as wide: column x shows sample x % samples of pixel x / samples.
-/// Red from image slot 0, green from slot 1 if there is one. Uniforms: int, the samples.
+/// Red from image slot 0, green from slot 1 if there is one; of images with fewer samples, the one that
+/// stands for sample s. Uniforms: int, the samples.
 inline const pipeline::FragmentProgram& unfold_program() {
   static const pipeline::FragmentProgram program =
       make_program("unfold", [](pipeline::FragmentBatch& batch, const void* u) {
@@ -98,7 +99,7 @@ inline const pipeline::FragmentProgram& unfold_program() {
             const pipeline::GpuImage* image = batch.resources->images[slot];
             if (image == nullptr || x >= image->width || y >= image->height) continue;
             float texel[4];
-            pipeline::read_texel(*image, x, y, s, texel);
+            pipeline::read_texel(*image, x, y, s * image->samples * image->layers / samples, texel);
             batch.color[0][slot][lane] = texel[0];
           }
         });
@@ -106,15 +107,29 @@ inline const pipeline::FragmentProgram& unfold_program() {
   return program;
 }
 
+inline GpuFeatures every_feature() {
+  GpuFeatures features;
+  features.native_msaa_max = 32;
+  features.target_independent_raster = true;
+  features.post_depth_coverage = true;
+  features.coverage_override = true;
+  features.viewport_multicast = true;
+  features.programmable_sample_positions = true;
+  features.conservative_raster = true;
+  return features;
+}
+
 /// A frame with one color and one depth image, cleared first; add draws, then `run` for all samples' red and
 /// depth.
 class SampleFrame {
  public:
   SampleFrame(std::shared_ptr<const pipeline::Scene> scene, int width, int height, int samples,
-              Format color = Format::r32_float, Format depth = Format::d32_float)
-      : graph(std::move(scene), width, height), samples_(samples) {
-    color_ = graph.add_image({"color", color, width, height, samples});
-    depth_ = graph.add_image({"depth", depth, width, height, samples});
+              Format color = Format::r32_float, Format depth = Format::d32_float, int color_samples = 0,
+              std::vector<pipeline::ViewportShift> viewports = {})
+      : graph(std::move(scene), width, height), samples_(samples), viewports_(std::move(viewports)) {
+    color_ = graph.add_image(
+        {"color", color, width, height, color_samples == 0 ? samples : color_samples, layers()});
+    depth_ = graph.add_image({"depth", depth, width, height, samples, layers()});
     graph.add_clear("clear", {color_, depth_});
   }
 
@@ -141,6 +156,7 @@ class SampleFrame {
                        bool with_color = true) {
     pipeline::Pass& pass = graph.add_pass(name, PassKind::draw);
     pass.samples = samples_;
+    pass.viewports = viewports_;
     if (with_color) pass.color = {color_};
     pass.depth = depth_;
     pass.batches = std::move(batches);
@@ -149,20 +165,17 @@ class SampleFrame {
 
   /// Column x * samples + s of the image holds sample s: red the color's red, green the depth.
   pipeline::Emulation run(const pipeline::EmulationOptions& options = {}) {
+    const int planes = samples_ * layers();
     const pipeline::ImageId out =
-        graph.add_image({"samples", Format::rgba32_float, graph.width() * samples_, graph.height(), 1});
+        graph.add_image({"samples", Format::rgba32_float, graph.width() * planes, graph.height(), 1});
     pipeline::Pass& pass = graph.add_pass("unfold", PassKind::full_screen);
-    pass.width = graph.width() * samples_;
+    pass.width = graph.width() * planes;
     pass.color = {out};
     pass.sampled = {color_, depth_};
     pass.fragment = &unfold_program();
-    pass.uniforms = std::make_shared<int>(samples_);
+    pass.uniforms = std::make_shared<int>(planes);
     graph.set_output(out);
-    GpuFeatures features;
-    features.native_msaa_max = 32;
-    features.programmable_sample_positions = true;
-    features.conservative_raster = true;
-    return pipeline::emulate(graph, features, FunctionalConfig{}, options);
+    return pipeline::emulate(graph, every_feature(), FunctionalConfig{}, options);
   }
 
   pipeline::ImageId color() const { return color_; }
@@ -170,7 +183,10 @@ class SampleFrame {
   pipeline::FrameGraph graph;
 
  private:
+  int layers() const { return viewports_.empty() ? 1 : static_cast<int>(viewports_.size()); }
+
   int samples_;
+  std::vector<pipeline::ViewportShift> viewports_;
   pipeline::ImageId color_, depth_;
 };
 
