@@ -1,5 +1,6 @@
 // The techniques, family by family. A family lists its own in a table beside its code; a new family is one
 // line here.
+#include "algos/agaa.h"
 #include "algos/deferred.h"
 #include "algos/forward_techniques.h"
 #include "algos/sbaa.h"
@@ -12,6 +13,7 @@ constexpr std::span<const TechniqueInfo> (*kFamilies[])() = {
     forward_techniques,
     deferred_techniques,
     sbaa_techniques,
+    agaa_techniques,
 };
 
 }  // namespace

@@ -127,6 +127,10 @@ std::span<const CounterViolation> check_conservation(const PassCounters& c,
                 t.slots_emitted_second_surfaces, t.slots_emitted_first_surfaces);
   check.at_most("technique.merge_fallbacks_surfaces <= technique.slots_emitted_surfaces",
                 t.merge_fallbacks_surfaces, t.slots_emitted_surfaces);
+  check.at_most("technique.agaa_plane_split_pixels <= technique.agaa_aggregates",
+                c.technique.agaa_plane_split_pixels, c.technique.agaa_aggregates);
+  check.at_most("technique.agaa_mixed_code_fragments <= ps.invocations",
+                c.technique.agaa_mixed_code_fragments, c.ps.invocations);
   return check.found();
 }
 

@@ -139,7 +139,10 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(merge_fallbacks_surfaces,                                                                      \
     "of these, single primitives: depths of the aligned samples lay in two groups")                \
   X(slots_empty_surfaces, "of these, those that no fragment wrote")                                \
-  X(slot_conflicts_fragments, "SBAA: fragments that replaced another one's record in a slot")
+  X(slot_conflicts_fragments, "SBAA: fragments that replaced another one's record in a slot")      \
+  X(agaa_aggregates, "AGAA: aggregates that the clustering of pixels' samples made")               \
+  X(agaa_plane_split_pixels, "AGAA: pixels in which it made several aggregates of one plane")      \
+  X(agaa_mixed_code_fragments, "AGAA: fragments whose samples belong to several aggregates")
 
 /// Bytes that units asked for, by stream; what of it DRAM moves is the timing engines' business.
 #define HWSIM_MEM_COUNTERS(X)                                             \

@@ -16,7 +16,7 @@ namespace hwsim::pipeline {
 inline constexpr int kBatchLanes = 64;
 inline constexpr int kBatchQuads = 16;
 inline constexpr int kMaxColorTargets = 8;
-inline constexpr int kMaxImageSlots = 8;
+inline constexpr int kMaxImageSlots = 12;
 inline constexpr int kMaxBufferSlots = 8;
 
 /// Material state of a draw, as shaders see it.

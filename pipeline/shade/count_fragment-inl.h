@@ -137,11 +137,11 @@ class CountFragment {
   bool writes_mask_ = false;
 };
 
-/// Counts a shader and fills a program's costs.
+/// Counts a shader and fills a program's costs. Uniforms count where the host itself branches on them.
 template <class Shader>
-FragmentProgram describe_fragment_shader(std::string name, void (*run)(FragmentBatch&, const void*)) {
+FragmentProgram describe_fragment_shader(std::string name, void (*run)(FragmentBatch&, const void*),
+                                         const typename Shader::Uniforms& uniforms = {}) {
   CountFragment counter;
-  const typename Shader::Uniforms uniforms{};
   Shader::run(counter, uniforms);
   FragmentProgram program;
   program.name = std::move(name);

@@ -13,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
-enum class MeshOutput { position, uv, normal, normal_uv, surface, full };
+enum class MeshOutput { position, uv, geometry, normal, normal_uv, surface, full };
 
 /// S offers F, the attributes and matrices, and the outputs: VertexLanes below, or CountVertex.
 template <MeshOutput kOutput>
@@ -32,6 +32,14 @@ struct MeshVertexShader {
     if constexpr (kOutput == MeshOutput::uv) {
       s.varying(0, s.attribute(s.kAlphaUv, 0));
       s.varying(1, s.attribute(s.kAlphaUv, 1));
+    }
+    if constexpr (kOutput == MeshOutput::geometry) {
+      using G = GeometryVaryings;
+      s.varying(G::kPosition, world.x);
+      s.varying(G::kPosition + 1, world.y);
+      s.varying(G::kPosition + 2, world.z);
+      s.varying(G::kUv0, s.attribute(s.kUv, 0));
+      s.varying(G::kUv0 + 1, s.attribute(s.kUv, 1));
     }
     if constexpr (kOutput >= MeshOutput::normal) {
       const Vec3<F> n = s.attribute3(s.kNormal);
@@ -140,6 +148,7 @@ void run_position(VertexBatch& b, const void* u) { run_mesh_vertex<MeshOutput::p
 void run_uv(VertexBatch& b, const void* u) { run_mesh_vertex<MeshOutput::uv>(b, u); }
 void run_normal(VertexBatch& b, const void* u) { run_mesh_vertex<MeshOutput::normal>(b, u); }
 void run_normal_uv(VertexBatch& b, const void* u) { run_mesh_vertex<MeshOutput::normal_uv>(b, u); }
+void run_geometry(VertexBatch& b, const void* u) { run_mesh_vertex<MeshOutput::geometry>(b, u); }
 void run_surface(VertexBatch& b, const void* u) { run_mesh_vertex<MeshOutput::surface>(b, u); }
 void run_full(VertexBatch& b, const void* u) { run_mesh_vertex<MeshOutput::full>(b, u); }
 
@@ -152,6 +161,7 @@ HWY_EXPORT(run_position);
 HWY_EXPORT(run_uv);
 HWY_EXPORT(run_normal);
 HWY_EXPORT(run_normal_uv);
+HWY_EXPORT(run_geometry);
 HWY_EXPORT(run_surface);
 HWY_EXPORT(run_full);
 
@@ -193,6 +203,14 @@ const VertexProgram& mesh_normal_uv_program() {
   static const VertexProgram program =
       describe<MeshOutput::normal_uv>("mesh_normal_uv", [](VertexBatch& b, const void* u) {
         HWY_DYNAMIC_DISPATCH(run_normal_uv)
+        (b, u);
+      });
+  return program;
+}
+const VertexProgram& mesh_geometry_program() {
+  static const VertexProgram program =
+      describe<MeshOutput::geometry>("mesh_geometry", [](VertexBatch& b, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_geometry)
         (b, u);
       });
   return program;

@@ -18,6 +18,13 @@ struct SurfaceVaryings {
   static constexpr int kNormalOnly = 3, kNormalUv = 5, kBasic = 8, kFull = 18;
 };
 
+/// Of mesh_geometry_program: passes that need the primitive's plane and perhaps its alpha.
+struct GeometryVaryings {
+  static constexpr int kPosition = 0;  ///< 3, world space
+  static constexpr int kUv0 = 3;       ///< 2
+  static constexpr int kCount = 5;
+};
+
 struct MeshVertexUniforms {
   glm::mat4 clip_from_world{1.0f};
 };
@@ -27,7 +34,8 @@ const VertexProgram& mesh_uv_program();        ///< the base color texture's, at
 const VertexProgram& mesh_normal_program();    ///< SurfaceVaryings up to kNormalOnly
 /// Up to kNormalUv, with the base color texture's coordinates.
 const VertexProgram& mesh_normal_uv_program();
-const VertexProgram& mesh_surface_program();  ///< SurfaceVaryings up to kBasic
+const VertexProgram& mesh_geometry_program();  ///< GeometryVaryings
+const VertexProgram& mesh_surface_program();   ///< SurfaceVaryings up to kBasic
 const VertexProgram& mesh_full_program();     ///< SurfaceVaryings up to kFull
 
 }  // namespace hwsim::pipeline

@@ -20,7 +20,8 @@ inline std::vector<std::string> technique_variants() {
   for (const algos::TechniqueInfo& t : algos::techniques()) all.emplace_back(t.id);
   for (const char* variant :
        {"ssaa4x:variant=accumulate", "ssaa4x:variant=sample_rate", "msaa4x:centroid=off",
-        "deferred:samples=1", "deferred_simple_complex:lighting=compute"})
+        "deferred:samples=1", "deferred_simple_complex:lighting=compute", "agaa:msaa=32",
+        "agaa:c=4,ndf=sggx,brdf=ggx,accumulate=atomics"})
     all.emplace_back(variant);
   return all;
 }

@@ -1,0 +1,109 @@
+#pragma once
+// Aggregate G-buffer anti-aliasing (techniques 4; Crassin et al. 2016).
+#include <array>
+#include <glm/glm.hpp>
+
+#include "hwsim/format.h"
+#include "pipeline/graph/pipeline_state.h"
+#include "pipeline/shade/lighting.h"
+#include "pipeline/shade/program.h"
+
+namespace hwsim::algos {
+
+enum class Ndf { toksvig, lean, sggx };
+enum class DiffuseFilter { off, folded, geometric };
+
+/// The center rays of pixels: at view depth d pixel (x, y) sees, relative to the eye,
+///   origin + x * origin_per_x + y * origin_per_y + d * (first + x * per_x + y * per_y).
+struct PixelRays {
+  glm::vec3 first{0.0f, 0.0f, -1.0f}, per_x{0.0f}, per_y{0.0f};
+  glm::vec3 origin{0.0f}, origin_per_x{0.0f}, origin_per_y{0.0f};
+};
+
+/// The render targets of an aggregate, by what they hold; -1: none.
+struct AggregateTargets {
+  int shape = 0;  ///< Toksvig vector and Y'; LEAN b and M's diagonal; SGGX diagonal and Sxy
+  int albedo = 1;
+  int chroma = 2;               ///< Cb, Cr, emissive, and the mask's first byte or the sample count
+  int shape_rest = -1;          ///< LEAN Mxy and Y'; SGGX Sxz, Syz
+  int luma = -1;                ///< SGGX: Y'
+  int geometric = -1;           ///< mean of unit normals, mean gloss
+  int moments = -1;             ///< means of view depth and of its square
+  int mask_1 = -1;              ///< the mask's second byte
+  int mask_2 = -1;              ///< its third and fourth
+  int mask_word = -1;           ///< all four, in a target of their own
+  bool counts_samples = false;  ///< chroma's byte counts samples instead of naming them
+};
+
+/// Attributes of fragments and aggregates that passes 3, 3m and 4 agree on.
+struct AggregateUniforms {
+  AggregateTargets targets;
+  Ndf ndf = Ndf::toksvig;
+  PixelRays rays;
+  float gloss_reference = 0.0f;  ///< S of techniques 4.8; 0: infinite
+  int samples = 8;               ///< of all layers
+  int code_bits = 1;             ///< of a sample's aggregate; 0: one aggregate
+  int width = 1;                 ///< of the frame, px: addresses of the storage buffer
+};
+
+struct VisibilityUniforms {
+  PixelRays rays;
+};
+/// Pass 1: the primitive's normal as a rg8_unorm code; with `alpha`, the base color's alpha for coverage.
+const pipeline::FragmentProgram& agaa_visibility_program(bool alpha);
+
+struct DefineUniforms {
+  glm::mat4 view_from_clip{1.0f};
+  int width = 1, height = 1, samples = 8, aggregates = 2, code_bits = 1;
+  std::array<pipeline::SamplePosition, 32> positions{};
+  float inv_k2 = 100.0f;     ///< 1 / k^2, per m^2
+  float footprint_k = 0.0f;  ///< k_mode footprint: k grows to this times the distance; 0: it does not
+  bool perspective = true;
+  float separation = 0.02f;  ///< t
+  bool unit_mean_normal = true;
+  bool squared_sums = false;  ///< seeds beyond the second by sums of d^2 instead of d
+};
+/// Pass 2: image 0 depth, 1 normal codes; target 0 the codes, eight samples a layer.
+const pipeline::ComputeProgram& agaa_define_program();
+
+struct GenerateUniforms {
+  AggregateUniforms aggregate;
+  bool full_varyings = false;
+  int color_samples = 2;       ///< of the targets: an aggregate each
+  int raster_samples = 8;      ///< of a layer
+  glm::vec4 view_z_row{0.0f};  ///< view depth of world positions
+};
+/// Pass 3: image 0 the codes. Into color targets by blending, or by atomics into a storage buffer.
+const pipeline::FragmentProgram& agaa_generate_program(Ndf ndf, bool full_varyings, bool atomic);
+
+/// 32-bit words of an aggregate in the storage buffer, and the fixed-point unit.
+inline constexpr int kAggregateWords = 18;
+inline constexpr float kFixedPoint = 1048576.0f;
+
+struct MergeLayersUniforms {
+  AggregateTargets from, to;
+  int width = 1, height = 1, layers = 1, color_samples = 2, aggregates = 2;
+};
+/// Pass 3m: sums the records of the layers and joins their masks.
+const pipeline::ComputeProgram& agaa_merge_program();
+
+inline constexpr int kMaxShadowTaps = 8, kMaxVisibleNormals = 32;
+struct ShadeUniforms {
+  AggregateUniforms aggregate;
+  pipeline::LightingUniforms lighting;
+  glm::mat4 eye_from_clip{1.0f};  ///< to world axes around the eye
+  glm::vec3 background{0.0f};
+  int height = 1, aggregates = 2;
+  int depth_slot = 3, code_slot = 4;  ///< image slots; the targets come first
+  std::array<pipeline::SamplePosition, 32> positions{};
+  DiffuseFilter diffuse = DiffuseFilter::folded;
+  bool separate_gloss = false, light_variance = false;
+  int shadow_taps = 4;
+  std::array<float, kMaxShadowTaps> tap_position{}, tap_weight{};
+  int visible_normals = 8;
+  std::array<glm::vec3, kMaxVisibleNormals> disk{};  ///< points on the hemisphere over the unit disk
+};
+/// Pass 4: lights every aggregate and puts them over the background.
+const pipeline::FragmentProgram& agaa_shade_program(Ndf ndf, bool buffer);
+
+}  // namespace hwsim::algos

@@ -1,0 +1,361 @@
+// Shading of aggregates (techniques 4.8).
+#include "algos/shaders/agaa.h"
+#include "pipeline/emulate/fragment_batch.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "algos/shaders/agaa_shade.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+
+#include "algos/shaders/agaa_lobes-inl.h"
+#include "algos/shaders/agaa_record-inl.h"
+#include "pipeline/shade/count_fragment-inl.h"
+#include "pipeline/shade/fragment_lanes-inl.h"
+#include "pipeline/shade/lighting-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::algos::HWY_NAMESPACE {
+
+/// Lighting has blocks 6 to 9 (shade/lighting-inl.h).
+enum ShadeBlock : int {
+  kAggregateBlock = 1,
+  kOccupiedBlock = 2,
+  kPositionBlock = 3,
+  kGlossBlock = 4,
+  kVarianceBlock = 5,
+  kTapBlock = 10,
+  kNormalBlock = 11,
+  kNormalDotBlock = 12,
+  kFilterBlock = 13
+};
+
+/// Lights one aggregate of every pixel.
+template <class S>
+class AggregateLight {
+ public:
+  using F = typename S::F;
+  using I = typename S::I;
+  using M = typename S::M;
+
+  AggregateLight(S& s, const ShadeUniforms& u, M mask) : s_(s), u_(u), mask_(mask) {
+    frame_ = pixel_frame<F>(u.aggregate.rays, s.pixel_x(), s.pixel_y());
+  }
+
+  /// `r`: normalized means.
+  Vec3<F> run(const AggregateRecord<F, I>& r) {
+    find_place(r);
+    surface_.to_eye = normalize(-place_);
+    surface_.position = place_ + constant<F>(u_.lighting.eye);
+    surface_.albedo = r.albedo;
+    surface_.specular = decode_specular(r.luma, r.cb, r.cr);
+    surface_.emissive = {r.emissive, r.emissive, r.emissive};
+    find_shape(r);
+    return light();
+  }
+
+ private:
+  // Mean and main axis of the samples' positions.
+  void find_place(const AggregateRecord<F, I>& r) {
+    const I x = s_.pixel_x(), y = s_.pixel_y();
+    if (u_.aggregate.targets.moments >= 0) {
+      const PixelRays& rays = u_.aggregate.rays;
+      const F fx = to_float(x), fy = to_float(y);
+      const Vec3<F> ray =
+          constant<F>(rays.first) + constant<F>(rays.per_x) * fx + constant<F>(rays.per_y) * fy;
+      place_ = constant<F>(rays.origin) + constant<F>(rays.origin_per_x) * fx +
+               constant<F>(rays.origin_per_y) * fy + ray * r.depth;
+      spread_ = ray * sqrt(max(r.depth2 - r.depth * r.depth, F(0.0f)));
+      return;
+    }
+    Vec3<F> first = {F(0.0f), F(0.0f), F(0.0f)}, sum = first;
+    SymmetricMatrix<F> squares = {F(0.0f), F(0.0f), F(0.0f), F(0.0f), F(0.0f), F(0.0f)};
+    F count(0.0f);
+    s_.loop(kPositionBlock, u_.aggregate.samples, mask_, [&](int i) HWY_ATTR {
+      const F z = s_.load_image(u_.depth_slot, x, y, I(i)).x;
+      const M in = has_sample(r, x, y, i) & (z < F(1.0f));
+      const Vec3<F> p = unproject(x, y, u_.positions[static_cast<std::size_t>(i)], z);
+      first = select(in & (count < F(0.5f)), p, first);
+      const F one = select(in, F(1.0f), F(0.0f));
+      const Vec3<F> d =
+          (p - first) * one;  // from the first one: squares of distances to the eye would cancel
+      count = count + one;
+      sum = sum + d;
+      add_square(squares, d);
+    });
+    const F share = F(1.0f) / max(count, F(1.0f));
+    const Vec3<F> mean = sum * share;
+    place_ = first + mean;
+    covariance_ = covariance(squares, mean, share);
+    spread_ = main_axis(covariance_);
+  }
+
+  M has_sample(const AggregateRecord<F, I>& r, I x, I y, int i) {
+    if (!u_.aggregate.targets.counts_samples) return (shift_right_by(r.mask, I(i)) & I(1)) != I(0);
+    // Without masks the codes say which samples were meant.
+    if (u_.aggregate.code_bits == 0) return mask_;
+    const int bits = u_.aggregate.code_bits;
+    const I codes = to_int(s_.load_image(u_.code_slot, x, y, I(i / 8)).x);
+    return (shift_right_by(codes, I(i % 8 * bits)) & I((1 << bits) - 1)) == I(aggregate_);
+  }
+
+  Vec3<F> unproject(I x, I y, pipeline::SamplePosition p, F z) const {
+    const F px = to_float(x) + F(0.5f + static_cast<float>(p.x) * 0.0625f);
+    const F py = to_float(y) + F(0.5f + static_cast<float>(p.y) * 0.0625f);
+    const F ndc_x = px * F(2.0f / static_cast<float>(u_.aggregate.width)) - F(1.0f);
+    const F ndc_y = F(1.0f) - py * F(2.0f / static_cast<float>(u_.height));
+    const glm::mat4& m = u_.eye_from_clip;
+    const auto row = [&](int k) HWY_ATTR {
+      return F(m[0][k]) * ndc_x + F(m[1][k]) * ndc_y + F(m[2][k]) * z + F(m[3][k]);
+    };
+    const F inv_w = F(1.0f) / row(3);
+    return {row(0) * inv_w, row(1) * inv_w, row(2) * inv_w};
+  }
+
+  void find_shape(const AggregateRecord<F, I>& r) {
+    switch (u_.aggregate.ndf) {
+      case Ndf::toksvig: {
+        const Vec3<F> v = {r.shape[0], r.shape[1], r.shape[2]};
+        const F length2 = dot(v, v);
+        length_ = min(sqrt(length2), F(1.0f - 1.0f / 65535.0f));
+        surface_.normal = select(length2 > F(1e-12f), normalize(v), surface_.to_eye);  // opposed normals
+        set_gloss(exponent_of(length_, u_.aggregate.gloss_reference));
+        diffuse_length_ = length_;
+        break;
+      }
+      case Ndf::lean:
+        lean_ = make_lean(r.shape);
+        surface_.normal = normalize(frame_.x * r.shape[0] + frame_.y * r.shape[1] + frame_.z);
+        set_gloss(F(2.0f) / max(lean_.xx + lean_.yy, F(1e-5f)));
+        diffuse_length_ = surface_.exponent / (surface_.exponent + F(1.0f));
+        break;
+      case Ndf::sggx:
+        sggx_ = make_sggx(r.shape);
+        surface_.normal = main_axis(sggx_.s);
+        surface_.normal = normalize(
+            surface_.normal * select(dot(surface_.normal, surface_.to_eye) < F(0.0f), F(-1.0f), F(1.0f)));
+        set_gloss(F(kLargestExponent));
+        diffuse_length_ = F(1.0f);
+        find_visible_normals();
+        break;
+    }
+    s_.uniform_branch(kGlossBlock, u_.aggregate.targets.geometric >= 0, [&]() HWY_ATTR {
+      const F length = min(sqrt(dot(r.normal, r.normal)), F(1.0f - 1.0f / 65535.0f));
+      if (u_.diffuse == DiffuseFilter::geometric) diffuse_length_ = length;
+      if (!u_.separate_gloss || u_.aggregate.ndf != Ndf::toksvig) return;
+      // Toksvig's factor on the mean gloss: steps 1 to 4 of section 3.5.2.
+      const F s = exponent_of(min(r.gloss, F(1.0f - 1.0f / 65535.0f)), u_.aggregate.gloss_reference);
+      const F factor = length / max(length + s * (F(1.0f) - length), F(1e-6f));
+      surface_.normal = normalize(r.normal);
+      set_gloss(s * factor);
+    });
+  }
+
+  void set_gloss(F exponent) {
+    surface_.exponent = min(exponent, F(kLargestExponent));
+    surface_.alpha = sqrt(F(2.0f) / (surface_.exponent + F(2.0f)));
+  }
+
+  void find_visible_normals() {
+    const SggxFrame<F> view = sggx_frame(sggx_, surface_.to_eye);
+    s_.loop(kNormalBlock, u_.visible_normals, mask_, [&](int i) HWY_ATTR {
+      const auto n = static_cast<std::size_t>(i);
+      normals_[n] = visible_normal(view, constant<F>(u_.disk[n]));
+    });
+  }
+
+  F diffuse(const Vec3<F>& l, F length) {
+    const F mu = dot(surface_.normal, l);
+    F result = max(mu, F(0.0f));
+    if (u_.aggregate.ndf == Ndf::sggx) {
+      F sum(0.0f);
+      s_.loop(kNormalDotBlock, u_.visible_normals, mask_, [&](int i) HWY_ATTR {
+        sum = sum + max(dot(normals_[static_cast<std::size_t>(i)], l), F(0.0f));
+      });
+      return sum * F(1.0f / static_cast<float>(u_.visible_normals));
+    }
+    s_.uniform_branch(kFilterBlock, u_.diffuse != DiffuseFilter::off,
+                      [&]() HWY_ATTR { result = vmf_diffuse(length, mu); });
+    return result;
+  }
+
+  /// Light from the unit direction l, `variance` of it over the aggregate.
+  Vec3<F> reflect(const Vec3<F>& l, F variance) {
+    lanes::Surface<F> surface = surface_;
+    F length = diffuse_length_;
+    s_.uniform_branch(kVarianceBlock, u_.light_variance && u_.aggregate.ndf == Ndf::toksvig, [&]() HWY_ATTR {
+      const F own = F(1.0f) / max(surface.exponent, F(1e-3f));
+      surface.exponent = min(F(1.0f) / max(own + variance, F(1e-6f)), F(kLargestExponent));
+      surface.alpha = sqrt(F(2.0f) / (surface.exponent + F(2.0f)));
+      length = length / (F(1.0f) + variance * length);
+    });
+    const bool ggx = u_.lighting.model == pipeline::ShadingModel::ggx;
+    const Vec3<F> matte = surface.albedo * diffuse(l, length);
+    switch (u_.aggregate.ndf) {
+      case Ndf::toksvig:
+        return matte + (ggx ? ggx_specular(surface, l) : blinn_phong_specular(surface, l));
+      case Ndf::lean:
+        return matte + lean_specular(surface, lean_, frame_, l, ggx);
+      case Ndf::sggx:
+        return matte + sggx_specular(surface, sggx_, l, ggx);
+    }
+    return matte;
+  }
+
+  Vec3<F> light() {
+    const pipeline::LightingUniforms& lights = u_.lighting;
+    Vec3<F> sum = surface_.emissive + surface_.albedo * constant<F>(lights.ambient);
+    s_.loop(lanes::kDirectionalBlock, lights.directional_count, mask_, [&](int i) HWY_ATTR {
+      const auto& light = lights.directional[static_cast<std::size_t>(i)];
+      F visible(1.0f);
+      s_.uniform_branch(lanes::kShadowBlock, light.shadowed && lights.shadow_slot >= 0,
+                        [&]() HWY_ATTR { visible = filtered_shadow(); });
+      sum = sum + reflect(constant<F>(light.to_light), F(0.0f)) * (constant<F>(light.color) * visible);
+    });
+    const std::span points(lights.points.data(), s_.loop_count(lights.point_count));
+    s_.loop(lanes::kPointBlock, static_cast<int>(points.size()), mask_, [&](int i) HWY_ATTR {
+      const auto& light = points[static_cast<std::size_t>(i)];
+      Vec3<F> l;
+      const F attenuation = lanes::point_attenuation(light, surface_.position, l);
+      s_.branch(lanes::kPointInRangeBlock, mask_ & (attenuation > F(0.0f)), [&]() HWY_ATTR {
+        const Vec3<F> d = constant<F>(light.position) - surface_.position;
+        F variance(0.0f);
+        if (u_.light_variance) variance = across_variance(covariance_, l) / max(dot(d, d), F(1e-6f));
+        sum = sum + reflect(l, variance) * (constant<F>(light.color) * attenuation);
+      });
+    });
+    return sum;
+  }
+
+  /// Taps along the main axis, each compared as an ordinary receiver.
+  F filtered_shadow() {
+    F visible(0.0f);
+    s_.loop(kTapBlock, u_.shadow_taps, mask_, [&](int i) HWY_ATTR {
+      const auto tap = static_cast<std::size_t>(i);
+      const Vec3<F> p = surface_.position + spread_ * F(u_.tap_position[tap]);
+      visible =
+          visible + lanes::shadow_visibility(s_, u_.lighting, p, surface_.normal) * F(u_.tap_weight[tap]);
+    });
+    return visible;
+  }
+
+ public:
+  int aggregate_ = 0;
+
+ private:
+  S& s_;
+  const ShadeUniforms& u_;
+  M mask_;
+  PixelFrame<F> frame_{};
+  lanes::Surface<F> surface_{};
+  Vec3<F> place_{}, spread_{};  ///< relative to the eye; standard deviation along the main axis
+  SymmetricMatrix<F> covariance_{};
+  F length_{}, diffuse_length_{};
+  Lean<F> lean_{};
+  Sggx<F> sggx_{};
+  std::array<Vec3<F>, kMaxVisibleNormals> normals_{};
+};
+
+template <bool kBuffer>
+struct ShadeShader {
+  using Uniforms = ShadeUniforms;
+  template <class S>
+  static void run(S& s, const ShadeUniforms& u) {
+    using F = typename S::F;
+    using I = typename S::I;
+    Vec3<F> color = {F(0.0f), F(0.0f), F(0.0f)};
+    F covered(0.0f);
+    s.loop(kAggregateBlock, u.aggregates, s.valid(), [&](int a) HWY_ATTR {
+      AggregateRecord<F, I> r{};
+      Vec4<F> chroma{};
+      const auto load = [&](int target)
+                            HWY_ATTR { return s.load_image(target, s.pixel_x(), s.pixel_y(), I(a)); };
+      const I first =
+          ((s.pixel_y() * I(u.aggregate.width) + s.pixel_x()) * I(u.aggregates) + I(a)) * I(kAggregateWords);
+      if constexpr (kBuffer) {
+        r.mask = s.load_buffer(0, first + I(kMaskWord), s.valid());
+        r.count = to_float(bit_count(r.mask));
+      } else {
+        chroma = load(u.aggregate.targets.chroma);
+        load_mask<F, I>(u.aggregate.targets, chroma, load, r);
+      }
+      const auto occupied = s.valid() & (r.count > F(0.5f));
+      const F share = r.count * F(1.0f / static_cast<float>(u.aggregate.samples));
+      covered = covered + share;
+      s.branch(kOccupiedBlock, occupied, [&]() HWY_ATTR {
+        if constexpr (kBuffer)
+          load_words(s, u, first, r);
+        else
+          load_record<F, I>(u.aggregate.targets, u.aggregate.ndf, chroma, load, r);
+        normalize_record(u, r, F(1.0f) / max(share, F(1e-6f)));
+        AggregateLight<S> light(s, u, occupied);
+        light.aggregate_ = a;
+        const Vec3<F> lit = light.run(r);
+        using lanes::saturate;
+        const Vec3<F> shown = {saturate(lit.x), saturate(lit.y), saturate(lit.z)};
+        color = color + shown * select(occupied, share, F(0.0f));
+        s.count(&TechniqueCounters::lit_samples, occupied);
+      });
+    });
+    const Vec3<F> sky = constant<F>(u.background) * max(F(1.0f) - covered, F(0.0f));
+    s.output(0, {color.x + sky.x, color.y + sky.y, color.z + sky.z, F(1.0f)});
+  }
+
+  template <class F, class I>
+  static void normalize_record(const ShadeUniforms& u, AggregateRecord<F, I>& r, F scale) {
+    for_each_scalar(u.aggregate.ndf, u.aggregate.targets.geometric >= 0, r,
+                    [&](F& v, int) HWY_ATTR { v = v * scale; });
+    if (u.aggregate.targets.moments >= 0) {
+      r.depth = r.depth * scale;
+      r.depth2 = r.depth2 * scale;
+    }
+  }
+
+  template <class S, class F, class I>
+  static void load_words(S& s, const ShadeUniforms& u, I first, AggregateRecord<F, I>& r) {
+    for_each_scalar(u.aggregate.ndf, u.aggregate.targets.geometric >= 0, r, [&](F& v, int word) HWY_ATTR {
+      v = to_float(s.load_buffer(0, first + I(word), s.valid())) * F(1.0f / kFixedPoint);
+    });
+  }
+};
+
+void run_shade(pipeline::FragmentBatch& b, const void* u) {
+  lanes::run_fragment_shader<ShadeShader<false>>(b, u);
+}
+void run_shade_buffer(pipeline::FragmentBatch& b, const void* u) {
+  lanes::run_fragment_shader<ShadeShader<true>>(b, u);
+}
+
+}  // namespace hwsim::algos::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace hwsim::algos {
+HWY_EXPORT(run_shade);
+HWY_EXPORT(run_shade_buffer);
+
+namespace {
+using pipeline::FragmentBatch;
+using pipeline::FragmentProgram;
+void call_shade(FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_shade)(b, u); }
+void call_shade_buffer(FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_shade_buffer)(b, u); }
+
+template <bool kBuffer>
+FragmentProgram describe_shade(Ndf ndf, void (*run)(FragmentBatch&, const void*)) {
+  ShadeUniforms uniforms;
+  uniforms.aggregate.ndf = ndf;
+  if (ndf != Ndf::toksvig) uniforms.aggregate.targets.shape_rest = 3;
+  if (ndf == Ndf::sggx) uniforms.aggregate.targets.luma = 4;
+  return pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::ShadeShader<kBuffer>>(
+      "agaa_shade", run, uniforms);
+}
+}  // namespace
+
+const FragmentProgram& agaa_shade_program(Ndf ndf, bool buffer) {
+  static const std::array<FragmentProgram, 6> programs = {
+      describe_shade<false>(Ndf::toksvig, call_shade), describe_shade<true>(Ndf::toksvig, call_shade_buffer),
+      describe_shade<false>(Ndf::lean, call_shade),    describe_shade<true>(Ndf::lean, call_shade_buffer),
+      describe_shade<false>(Ndf::sggx, call_shade),    describe_shade<true>(Ndf::sggx, call_shade_buffer)};
+  return programs[static_cast<std::size_t>(ndf) * 2 + (buffer ? 1 : 0)];
+}
+
+}  // namespace hwsim::algos
+#endif
