@@ -329,7 +329,7 @@ TEST(Agaa, LayersOfEightSamplesAreNativeSamples) {
   const auto scene = share(patches({{-0.8f, 0.33f, 0, {0.8f, 0.3f, 0.1f}, 0.7f},
                                     {-0.2f, 0.9f, 0.1f, {0.1f, 0.6f, 0.9f}, -0.4f},
                                     {-0.6f, 0.6f, 0.5f, {0.9f, 0.9f, 0.2f}, 0.0f, 0.4f}}));
-  const std::string technique = "agaa:c=2,msaa=32,k_mode=footprint";
+  const std::string technique = "agaa:c=4,msaa=32,k_mode=footprint,footprint_px=32";
   const Shot layered{scene, technique}, native{scene, technique, native_features()};
   const Planes depth_a = planes_of(layered, "depth"), depth_b = planes_of(native, "depth");
   EXPECT_EQ(difference(depth_a.image, depth_b.image, "depth"), "");
@@ -411,8 +411,9 @@ TEST(Agaa, CountsFragmentsWithSeveralCodes) {
   EXPECT_GT(n.technique.agaa_mixed_code_fragments, 100u);
   EXPECT_GT(n.technique.agaa_plane_split_pixels, 100u);
   const PassCounters whole = total(render({split, "agaa:c=2,k_mode=footprint,footprint_px=64"}).trace);
-  EXPECT_EQ(whole.technique.agaa_mixed_code_fragments, 0u);
-  EXPECT_EQ(whole.technique.agaa_plane_split_pixels, 0u);
+  // Those that are left see the plane edge on.
+  EXPECT_LT(10 * whole.technique.agaa_mixed_code_fragments, n.technique.agaa_mixed_code_fragments);
+  EXPECT_LT(10 * whole.technique.agaa_plane_split_pixels, n.technique.agaa_plane_split_pixels);
 }
 
 // Every option runs and gives finite pixels.
