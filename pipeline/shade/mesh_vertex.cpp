@@ -38,8 +38,8 @@ struct MeshVertexShader {
       s.varying(G::kPosition, world.x);
       s.varying(G::kPosition + 1, world.y);
       s.varying(G::kPosition + 2, world.z);
-      s.varying(G::kUv0, s.attribute(s.kUv, 0));
-      s.varying(G::kUv0 + 1, s.attribute(s.kUv, 1));
+      s.varying(G::kUv0, s.attribute(s.kAlphaUv, 0));
+      s.varying(G::kUv0 + 1, s.attribute(s.kAlphaUv, 1));
     }
     if constexpr (kOutput >= MeshOutput::normal) {
       const Vec3<F> n = s.attribute3(s.kNormal);
