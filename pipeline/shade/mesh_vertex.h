@@ -36,6 +36,6 @@ const VertexProgram& mesh_normal_program();    ///< SurfaceVaryings up to kNorma
 const VertexProgram& mesh_normal_uv_program();
 const VertexProgram& mesh_geometry_program();  ///< GeometryVaryings
 const VertexProgram& mesh_surface_program();   ///< SurfaceVaryings up to kBasic
-const VertexProgram& mesh_full_program();     ///< SurfaceVaryings up to kFull
+const VertexProgram& mesh_full_program();      ///< SurfaceVaryings up to kFull
 
 }  // namespace hwsim::pipeline
