@@ -144,6 +144,8 @@ constexpr ErrorCode kCodes[] = {
     {"G008", "no output", "The frame's output is missing, multisampled, or a depth image."},
     {"G009", "bad copy or resolve",
      "Source and target of a copy must be alike; a resolve goes from several samples to one."},
+    {"G010", "geometry program emits too much",
+     "The vertices of one invocation, position and attributes, exceed functional.gs_max_scalars."},
 };
 
 }  // namespace

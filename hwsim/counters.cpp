@@ -10,6 +10,7 @@ constexpr bool is_bytes(std::string_view name) { return name.ends_with("_bytes")
 #define HWSIM_STATS_ENTRY(name, text) HWSIM_ENTRY_OF(stats, name, text)
 #define HWSIM_FE_ENTRY(name, text) HWSIM_ENTRY_OF(fe, name, text)
 #define HWSIM_VS_ENTRY(name, text) HWSIM_ENTRY_OF(vs, name, text)
+#define HWSIM_GS_ENTRY(name, text) HWSIM_ENTRY_OF(gs, name, text)
 #define HWSIM_SETUP_ENTRY(name, text) HWSIM_ENTRY_OF(setup, name, text)
 #define HWSIM_RASTER_ENTRY(name, text) HWSIM_ENTRY_OF(raster, name, text)
 #define HWSIM_HIZ_ENTRY(name, text) HWSIM_ENTRY_OF(hiz, name, text)
@@ -19,21 +20,24 @@ constexpr bool is_bytes(std::string_view name) { return name.ends_with("_bytes")
 #define HWSIM_TEX_ENTRY(name, text) HWSIM_ENTRY_OF(tex, name, text)
 #define HWSIM_CROP_ENTRY(name, text) HWSIM_ENTRY_OF(crop, name, text)
 #define HWSIM_RESOLVE_ENTRY(name, text) HWSIM_ENTRY_OF(resolve, name, text)
+#define HWSIM_TECHNIQUE_ENTRY(name, text) HWSIM_ENTRY_OF(technique, name, text)
 #define HWSIM_MEM_ENTRY(name, text) HWSIM_ENTRY_OF(mem, name, text)
 
 // The order is that of HWSIM_COUNTER_UNITS; the assertion below and a test on ids keep them together.
-constexpr CounterInfo kCatalog[] = {HWSIM_STATS_COUNTERS(HWSIM_STATS_ENTRY)      //
-                                    HWSIM_FRONT_END_COUNTERS(HWSIM_FE_ENTRY)     //
-                                    HWSIM_VS_COUNTERS(HWSIM_VS_ENTRY)            //
-                                    HWSIM_SETUP_COUNTERS(HWSIM_SETUP_ENTRY)      //
-                                    HWSIM_RASTER_COUNTERS(HWSIM_RASTER_ENTRY)    //
-                                    HWSIM_HIZ_COUNTERS(HWSIM_HIZ_ENTRY)          //
-                                    HWSIM_ZROP_COUNTERS(HWSIM_ZROP_ENTRY)        //
-                                    HWSIM_PS_COUNTERS(HWSIM_PS_ENTRY)            //
-                                    HWSIM_SHADER_COUNTERS(HWSIM_SHADER_ENTRY)    //
-                                    HWSIM_TEX_COUNTERS(HWSIM_TEX_ENTRY)          //
-                                    HWSIM_CROP_COUNTERS(HWSIM_CROP_ENTRY)        //
-                                    HWSIM_RESOLVE_COUNTERS(HWSIM_RESOLVE_ENTRY)  //
+constexpr CounterInfo kCatalog[] = {HWSIM_STATS_COUNTERS(HWSIM_STATS_ENTRY)          //
+                                    HWSIM_FRONT_END_COUNTERS(HWSIM_FE_ENTRY)         //
+                                    HWSIM_VS_COUNTERS(HWSIM_VS_ENTRY)                //
+                                    HWSIM_GS_COUNTERS(HWSIM_GS_ENTRY)                //
+                                    HWSIM_SETUP_COUNTERS(HWSIM_SETUP_ENTRY)          //
+                                    HWSIM_RASTER_COUNTERS(HWSIM_RASTER_ENTRY)        //
+                                    HWSIM_HIZ_COUNTERS(HWSIM_HIZ_ENTRY)              //
+                                    HWSIM_ZROP_COUNTERS(HWSIM_ZROP_ENTRY)            //
+                                    HWSIM_PS_COUNTERS(HWSIM_PS_ENTRY)                //
+                                    HWSIM_SHADER_COUNTERS(HWSIM_SHADER_ENTRY)        //
+                                    HWSIM_TEX_COUNTERS(HWSIM_TEX_ENTRY)              //
+                                    HWSIM_CROP_COUNTERS(HWSIM_CROP_ENTRY)            //
+                                    HWSIM_RESOLVE_COUNTERS(HWSIM_RESOLVE_ENTRY)      //
+                                    HWSIM_TECHNIQUE_COUNTERS(HWSIM_TECHNIQUE_ENTRY)  //
                                     HWSIM_MEM_COUNTERS(HWSIM_MEM_ENTRY)};
 static_assert(std::size(kCatalog) == kCounterCount);
 
@@ -89,6 +93,13 @@ std::span<const CounterViolation> check_conservation(const PassCounters& c,
                   c.setup.culled_zero_area_primitives + c.setup.culled_sample_miss_primitives +
                   c.setup.out_primitives,
               c.setup.in_primitives);
+  check.at_most("stats.geometry_shader_primitives <= gs.output_vertices", c.stats.geometry_shader_primitives,
+                c.gs.output_vertices);
+  check.equal(
+      "technique.sss_uncritical_primitives + early_exit + processed = technique.sss_tested_primitives",
+      c.technique.sss_uncritical_primitives + c.technique.sss_early_exit_primitives +
+          c.technique.sss_processed_primitives,
+      c.technique.sss_tested_primitives);
   check.equal("hiz.killed_tiles + hiz.accepted_tiles + hiz.ambiguous_tiles = hiz.tested_tiles",
               c.hiz.killed_tiles + c.hiz.accepted_tiles + c.hiz.ambiguous_tiles, c.hiz.tested_tiles);
   check.at_most("zrop.early_z_killed_samples <= zrop.early_z_tested_samples", c.zrop.early_z_killed_samples,

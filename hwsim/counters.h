@@ -17,6 +17,8 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(input_assembly_vertices, "indices (or vertices of unindexed draws) read")         \
   X(input_assembly_primitives, "primitives assembled")                                \
   X(vertex_shader_invocations, "vertices shaded: misses of the post-transform cache") \
+  X(geometry_shader_invocations, "primitives that geometry shaders ran on")           \
+  X(geometry_shader_primitives, "primitives that they emitted")                       \
   X(clipping_invocations, "primitives that reached the clipper")                      \
   X(clipping_primitives, "primitives that left the clipper")                          \
   X(fragment_shader_invocations, "fragment shader invocations, helpers included")     \
@@ -27,6 +29,11 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(alu_lane_ops, "vertex shader arithmetic, per vertex")                                 \
   X(sfu_lane_ops, "vertex shader special functions (reciprocal, root, exp2, log2, sine)") \
   X(output_scalars, "32-bit values written by vertex shaders for later stages")
+
+#define HWSIM_GS_COUNTERS(X)                                        \
+  X(input_bytes, "vertices handed to geometry shaders, three each") \
+  X(output_vertices, "vertices that geometry shaders emitted")      \
+  X(output_bytes, "bytes of these: position and attributes")
 
 #define HWSIM_SETUP_COUNTERS(X)                                                    \
   X(in_primitives, "triangles that reached culling and setup, after clipping")     \
@@ -128,6 +135,24 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(command_words, "32-bit words of the command stream") \
   X(cleared_tiles, "8x8 tiles cleared, all samples and targets")
 
+/// What single techniques count.
+#define HWSIM_TECHNIQUE_COUNTERS(X)                                                               \
+  X(sss_tested_primitives, "critical triangles that selective supersampling tested in this view") \
+  X(sss_uncritical_primitives, "of these, out of view or not critical in it")                     \
+  X(sss_early_exit_primitives, "of these, too far from a highlight")                              \
+  X(sss_processed_primitives, "of these, sampled further")                                        \
+  X(sss_point_samples, "points placed on them")                                                   \
+  X(sss_shaded_samples, "lighting evaluations of the further samples")                            \
+  X(sss_stored_fragments, "fragments stored in per-pixel lists")                                  \
+  X(sss_dropped_fragments, "fragments that found the lists' memory full: the image lacks them")   \
+  X(sss_truncated_pixels, "pixels whose list was longer than the resolve reads")                  \
+  X(sss_list_1_pixels, "pixels with one fragment in their list")                                  \
+  X(sss_list_2_to_3_pixels, "pixels with 2 or 3")                                                 \
+  X(sss_list_4_to_7_pixels, "pixels with 4 to 7")                                                 \
+  X(sss_list_8_to_15_pixels, "pixels with 8 to 15")                                               \
+  X(sss_list_16_to_31_pixels, "pixels with 16 to 31")                                             \
+  X(sss_list_from_32_pixels, "pixels with 32 or more")
+
 /// Bytes that units asked for, by stream; what of it DRAM moves is the timing engines' business.
 #define HWSIM_MEM_COUNTERS(X)                                             \
   X(depth_read_bytes, "depth and stencil read by tests")                  \
@@ -144,19 +169,21 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(other_write_bytes, "tile tables and other metadata written")
 
 /// All units: X(struct prefix, id, list)
-#define HWSIM_COUNTER_UNITS(U)                \
-  U(Stats, stats, HWSIM_STATS_COUNTERS)       \
-  U(FrontEnd, fe, HWSIM_FRONT_END_COUNTERS)   \
-  U(Vs, vs, HWSIM_VS_COUNTERS)                \
-  U(Setup, setup, HWSIM_SETUP_COUNTERS)       \
-  U(Raster, raster, HWSIM_RASTER_COUNTERS)    \
-  U(Hiz, hiz, HWSIM_HIZ_COUNTERS)             \
-  U(Zrop, zrop, HWSIM_ZROP_COUNTERS)          \
-  U(Ps, ps, HWSIM_PS_COUNTERS)                \
-  U(Shader, shader, HWSIM_SHADER_COUNTERS)    \
-  U(Tex, tex, HWSIM_TEX_COUNTERS)             \
-  U(Crop, crop, HWSIM_CROP_COUNTERS)          \
-  U(Resolve, resolve, HWSIM_RESOLVE_COUNTERS) \
+#define HWSIM_COUNTER_UNITS(U)                      \
+  U(Stats, stats, HWSIM_STATS_COUNTERS)             \
+  U(FrontEnd, fe, HWSIM_FRONT_END_COUNTERS)         \
+  U(Vs, vs, HWSIM_VS_COUNTERS)                      \
+  U(Gs, gs, HWSIM_GS_COUNTERS)                      \
+  U(Setup, setup, HWSIM_SETUP_COUNTERS)             \
+  U(Raster, raster, HWSIM_RASTER_COUNTERS)          \
+  U(Hiz, hiz, HWSIM_HIZ_COUNTERS)                   \
+  U(Zrop, zrop, HWSIM_ZROP_COUNTERS)                \
+  U(Ps, ps, HWSIM_PS_COUNTERS)                      \
+  U(Shader, shader, HWSIM_SHADER_COUNTERS)          \
+  U(Tex, tex, HWSIM_TEX_COUNTERS)                   \
+  U(Crop, crop, HWSIM_CROP_COUNTERS)                \
+  U(Resolve, resolve, HWSIM_RESOLVE_COUNTERS)       \
+  U(Technique, technique, HWSIM_TECHNIQUE_COUNTERS) \
   U(Mem, mem, HWSIM_MEM_COUNTERS)
 
 #define HWSIM_FIELD(name, text) std::uint64_t name = 0;

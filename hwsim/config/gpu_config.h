@@ -65,6 +65,8 @@ struct GpuValues {
   T draw_cycles{8.0};
   T state_change_cycles{16.0};
   T ia_indices_per_clk{0.0};
+  T gs_output_words_per_core_clk{4.0};
+  bool gs_on_chip = true;
   T setup_drawn_triangles_per_clk{0.0};
   T setup_culled_triangles_per_clk{0.0};
   T raster_engines{1.0};

@@ -21,6 +21,7 @@ struct GpuFeatures {
 
 struct FunctionalConfig {
   int post_transform_cache_entries = 32;  ///< FIFO
+  int gs_max_scalars = 1024;              ///< of all vertices that one geometry shader invocation emits
   bool late_z_on_discard = true;          ///< depth written after the shader where it can discard (gpus 10.1)
   int max_image_px = 16384;               ///< largest width or height of a render target
 };

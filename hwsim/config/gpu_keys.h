@@ -89,6 +89,12 @@ void describe_geometry(V& v, GpuValues<T>& c) {
   v.key({"ia_indices_per_clk", 0, kRateHigh, kRate,
          "indices fetched; 0: three for each triangle that setup can cull"},
         c.ia_indices_per_clk);
+  v.key({"gs_output_words_per_core_clk", kRateLow, kRateHigh, kFit | kRate,
+         "32-bit values that geometry shaders emit, a core clock and core"},
+        c.gs_output_words_per_core_clk);
+  v.key({"gs_on_chip", 0, 0, kNoFlags,
+         "geometry shaders' input and output stay on chip; else memory holds them between the stages"},
+        c.gs_on_chip);
   v.key({"setup_drawn_triangles_per_clk", kRateLow, kRateHigh, kRequired | kFit | kRate,
          "triangles sent to raster"},
         c.setup_drawn_triangles_per_clk);
@@ -266,6 +272,9 @@ void describe(V& v, FunctionalConfig& f) {
   v.key(
       {"functional.post_transform_cache_entries", 0, 4096, kNoFlags, "shaded vertices kept for reuse, FIFO"},
       f.post_transform_cache_entries);
+  v.key({"functional.gs_max_scalars", 16, 65536, kNoFlags,
+         "32-bit values of all vertices that one geometry shader invocation emits"},
+        f.gs_max_scalars);
   v.key({"functional.late_z_on_discard", 0, 0, kNoFlags, "depth is written after a shader that can discard"},
         f.late_z_on_discard);
   v.key({"functional.max_image_px", 1, 65536, kNoFlags, "largest width or height of an image"},

@@ -23,7 +23,7 @@ struct GpuRates {
   T vliw_word_ns;  ///< zero where words are not of five slots: then the average fill alone says it
   T shader_cores, subgroups_max, registers, alu_latency_ns, tex_latency_ns, l2_latency_ns, dram_latency_ns;
   T alu_lane_op_ns, sfu_lane_op_ns, interp_scalar_ns, memory_word_ns, group_memory_word_ns, atomic_ns,
-      same_address_atomic_ns;
+      same_address_atomic_ns, gs_output_word_ns;
   T bilinear_probe_ns, fetch_64bit_cost, fetch_128bit_cost, l1_fill_byte_ns, l1_bytes;
   std::array<T, kRateClassCount> color_px_ns,
       blended_px_ns;                               ///< gpus section 0, rule 1: min(raster, export, ROP)
@@ -38,7 +38,7 @@ struct GpuRates {
   int subgroup_size, queue_depth_chunks, queue_slices_min;
   bool vliw;  ///< special functions take a slot of the words
   bool interp_on_alu, crop_compressible_at_pixel_rate, msaa_color_compression, rop_through_l2, tile_based;
-  bool fast_clear_color, fast_clear_depth;
+  bool fast_clear_color, fast_clear_depth, gs_on_chip;
 };
 
 /// std::min and std::max return references to arguments and do not know Jets' comparisons in constant
@@ -117,6 +117,8 @@ void derive_shader(const GpuValues<T>& c, const T& clk_ns, GpuRates<T>& r) {
   r.group_memory_word_ns = clk_ns / (c.shader_cores * c.group_memory_words_per_core_clk);
   r.atomic_ns = clk_ns / c.atomic_lane_ops_per_clk;
   r.same_address_atomic_ns = clk_ns / c.atomic_same_address_ops_per_clk;
+  r.gs_output_word_ns = clk_ns / (c.shader_cores * c.gs_output_words_per_core_clk);
+  r.gs_on_chip = c.gs_on_chip;
   r.subgroup_size = c.subgroup_size;
 }
 

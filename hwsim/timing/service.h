@@ -48,6 +48,12 @@ T zrop_ns(const PassCounters& c, const GpuRates<T>& r) {
   return static_cast<double>(std::max(tested, c.zrop.written_samples)) * r.zrop_sample_ns;
 }
 
+/// Geometry shaders' output alone; what they compute is shader work as any other.
+template <class T>
+T gs_output_ns(const PassCounters& c, const GpuRates<T>& r) {
+  return static_cast<double>(c.gs.output_bytes) / 4.0 * r.gs_output_word_ns;
+}
+
 /// Vertex shading alone.
 template <class T>
 T vs_ns(const PassCounters& c, const GpuRates<T>& r) {
@@ -59,7 +65,8 @@ T vs_ns(const PassCounters& c, const GpuRates<T>& r) {
 template <class T>
 T resident_subgroups(const PassCounters& c, const GpuRates<T>& r) {
   const auto lanes =
-      static_cast<double>(c.stats.fragment_shader_invocations + c.stats.compute_shader_invocations);
+      static_cast<double>(c.stats.fragment_shader_invocations + c.stats.geometry_shader_invocations +
+                          c.stats.compute_shader_invocations);
   const auto registers = static_cast<double>(c.shader.register_lanes);
   if (lanes <= 0.0 || registers <= 0.0) return r.subgroups_max;
   return smaller(r.subgroups_max, larger(T(1.0), T(r.registers / (registers / lanes * r.subgroup_size))));
@@ -191,7 +198,7 @@ ChunkCost<T> chunk_cost(const PassCounters& c, const PassWork& pass, const Traff
   const auto set = [&cost](Unit unit, const T& ns) { cost.ns[at(unit)] = ns; };
   set(Unit::fe, fe_ns(c, r));
   set(Unit::ia, static_cast<double>(c.stats.input_assembly_vertices) * r.index_ns);
-  set(Unit::vs, vs_ns(c, r));
+  set(Unit::vs, larger(vs_ns(c, r), gs_output_ns(c, r)));
   set(Unit::setup, setup_ns(c, r));
   set(Unit::raster, raster_ns(c, pass, r));
   set(Unit::hiz, static_cast<double>(c.hiz.tested_tiles) * kTilePixels * r.hiz_px_ns);

@@ -155,6 +155,12 @@ ChunkTraffic<T> chunk_traffic(const PassCounters& c, const TrafficModel<T>& mode
   }
   traffic.storage_read_bytes = T(asked.read[at(Stream::storage)]);
   traffic.l1_fill_bytes = asked.read[at(Stream::texture)] * model.l1_fill;
+  if (!rates.gs_on_chip) {  // rings in memory before and behind the stage (gpus section 4)
+    const auto ring = static_cast<double>(c.gs.input_bytes + c.gs.output_bytes);
+    traffic.dram.write[at(Stream::other)] += ring;
+    traffic.dram.read[at(Stream::other)] += ring;
+    traffic.l2_bytes += T(2.0 * ring);
+  }
   if (rates.tile_based) {
     traffic.dram.write[at(Stream::other)] += binned_bytes(c);
     traffic.dram.read[at(Stream::other)] += binned_bytes(c);

@@ -30,7 +30,8 @@ class BinRunner : private BinShading {
   }
 
   void run(const Segment& segment, int bin) {
-    for (const GeometryItem& item : segment.items) {
+    for (std::size_t number = segment.first_item; number < segment.last_item; ++number) {
+      const GeometryItem& item = segment.items[number];
       const std::uint32_t first = item.bin_start[static_cast<std::size_t>(bin)];
       const std::uint32_t last = item.bin_start[static_cast<std::size_t>(bin) + 1];
       if (first == last) continue;

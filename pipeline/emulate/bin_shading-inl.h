@@ -84,7 +84,7 @@ class BinShading : protected BinColor {
     if (t == nullptr) return;
     batch.primitive.fill(t->primitive);
     batch.front_facing.fill(t->front_facing != w_.draw->mirrored);
-    const auto stride = static_cast<std::uint32_t>(w_.draw->batch->vertex->varying_scalars);
+    const auto stride = static_cast<std::uint32_t>(w_.draw->batch->raster_scalars());
     for (std::size_t v = 0; v < 3; ++v)
       batch.varyings[v].fill(varyings_of(t->vertex[v], stride, *segment, *item));
   }
@@ -151,7 +151,7 @@ class BinShading : protected BinColor {
     if (t == nullptr) return;
     batch.primitive[q] = t->primitive;
     batch.front_facing[q] = t->front_facing != w_.draw->mirrored;
-    const auto stride = static_cast<std::uint32_t>(w_.draw->batch->vertex->varying_scalars);
+    const auto stride = static_cast<std::uint32_t>(w_.draw->batch->raster_scalars());
     for (std::size_t v = 0; v < 3; ++v)
       batch.varyings[v][q] = varyings_of(t->vertex[v], stride, *segment, *item);
   }
@@ -249,6 +249,7 @@ class BinShading : protected BinColor {
   void shade(FragmentBatch& batch, bool sample_rate) {
     batch.discarded_lanes = 0;
     batch.blocks.used = 0;
+    batch.technique = &w_.counters().technique;
     batch.tex_bilinear_probes = 0;
     batch.image_texels = {};
     batch.image_read_bytes = 0;

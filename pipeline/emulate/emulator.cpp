@@ -16,8 +16,6 @@
 namespace hwsim::pipeline {
 namespace {
 
-constexpr std::uint64_t kSegmentTriangles =
-    262144;  // bounds memory: about 150 bytes a triangle that is drawn
 constexpr std::uint64_t kFullScreenBands = 64;
 constexpr int kReuseShiftMax = 5;  // 1 block in 32: the sampling error is in docs/hardware_model.md
 
@@ -80,7 +78,11 @@ class FrameRunner {
       images_[i] = std::make_unique<GpuImage>(desc.format, desc.width, desc.height, desc.samples);
     }
     for (std::size_t i = 0; i < buffers_.size(); ++i)
-      if (compiled_.buffers[i].first_pass == position) buffers_[i].assign(graph_.buffers()[i].words, 0);
+      if (compiled_.buffers[i].first_pass == position) {
+        const BufferDesc& desc = graph_.buffers()[i];
+        if (desc.contents) buffers_[i] = *desc.contents;
+        buffers_[i].resize(desc.words, 0);
+      }
   }
 
   void release(int position) {
@@ -119,7 +121,7 @@ class FrameRunner {
     for (const DrawBatch& batch : pass.batches) {
       work.sample_rate = work.sample_rate || batch.state.raster.sample_rate;
       if (batch.vertex != nullptr)
-        work.attribute_scalars = std::max(work.attribute_scalars, batch.vertex->varying_scalars);
+        work.attribute_scalars = std::max(work.attribute_scalars, batch.raster_scalars());
     }
     return work;
   }
@@ -248,7 +250,7 @@ class FrameRunner {
     BlockKinds kinds;
     std::uint64_t lines = pass.kind == PassKind::draw ? textures_.line_count() : 0, stored = 0, tiles = 0;
     for (const ImageId id : pass.sampled) lines += allocated_bytes(graph_.image(id)) / kLineBytes;
-    for (const BufferId id : pass.storage) stored += allocated_bytes(graph_.buffer(id)) / kLineBytes;
+    for (const BufferId id : pass.storage) stored += 4 * graph_.buffer(id).words / kLineBytes;
     for (const ImageId id : pass.targets) stored += allocated_bytes(graph_.image(id)) / kLineBytes;
     for (const GpuImage* target : c.color) {
       tiles += target->touched_chunk.size();
@@ -351,14 +353,25 @@ class FrameRunner {
       for (std::uint64_t n = 0; last < c.draws.size() && n < kSegmentTriangles; ++last)
         n += c.draws[last].primitive_count();
       Segment segment = make_segment(c, first, last);
-      skipped_draws_ += run_geometry(c, segment, geometry, workers_);
-      parallel_for(static_cast<std::size_t>(c.bins_x * c.bins_y), options_.jobs,
-                   [&](std::size_t bin, int worker) {
-                     run_bin(c, segment, static_cast<int>(bin), workers_[static_cast<std::size_t>(worker)]);
-                   });
+      skipped_draws_ += run_vertices(c, segment, geometry, workers_);
+      while (next_items(c, segment)) {
+        run_primitives(c, segment, options_.jobs, workers_);
+        parallel_for(static_cast<std::size_t>(c.bins_x * c.bins_y), bin_jobs(pass),
+                     [&](std::size_t bin, int worker) {
+                       run_bin(c, segment, static_cast<int>(bin), workers_[static_cast<std::size_t>(worker)]);
+                     });
+      }
       first = last;
     }
     finish_workers(pass, work);
+  }
+
+  /// One thread where what is stored depends on the order, so that the result does not depend on the threads.
+  int bin_jobs(const Pass& pass) const {
+    bool ordered = pass.fragment != nullptr && pass.fragment->ordered_storage;
+    for (const DrawBatch& batch : pass.batches)
+      ordered = ordered || (batch.fragment != nullptr && batch.fragment->ordered_storage);
+    return ordered ? 1 : options_.jobs;
   }
 
   // A draw's commands count where its triangles do.
@@ -394,7 +407,7 @@ class FrameRunner {
     count_commands(pass, c, work.barrier_before, workers_.front().chunks);
     workers_.front().chunks[0].stats.input_assembly_vertices += 3;  // one triangle that covers the screen
     workers_.front().chunks[0].stats.vertex_shader_invocations += 3;
-    parallel_for(bins, options_.jobs, [&](std::size_t bin, int worker) {
+    parallel_for(bins, bin_jobs(pass), [&](std::size_t bin, int worker) {
       BinWorker& w = workers_[static_cast<std::size_t>(worker)];
       w.current_chunk = static_cast<std::uint32_t>(bin * bands / bins);
       run_full_screen_bin(c, static_cast<int>(bin), w);

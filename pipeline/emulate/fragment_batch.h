@@ -88,6 +88,7 @@ struct FragmentBatch {
   alignas(64) float color[kMaxColorTargets][4][kBatchLanes];
   std::uint64_t discarded_lanes = 0;
   BlockTrips blocks;
+  TechniqueCounters* technique = nullptr;
   std::uint64_t tex_bilinear_probes = 0;  ///< beyond the first of each request
   TexelCounts image_texels;               ///< unfiltered texels loaded from the pass's images
   std::uint64_t image_read_bytes = 0;     ///< their bytes

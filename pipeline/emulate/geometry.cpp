@@ -4,6 +4,7 @@
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/emulate/binning.h"
+#include "pipeline/emulate/geometry_stage.h"
 #include "pipeline/emulate/primitive_setup.h"
 #include "pipeline/emulate/vertex_stage.h"
 
@@ -17,16 +18,25 @@ VertexSource source_of(const Segment& segment, const DrawInfo& draw, std::uint32
           static_cast<std::size_t>(draw.batch->vertex->varying_scalars)};
 }
 
+void shade_primitives(const PassContext& context, const Segment& segment, GeometryItem& item,
+                      BinWorker& worker) {
+  const DrawInfo& draw = context.draws[item.draw];
+  std::vector<std::uint32_t> indices(
+      draw.indices + std::size_t{3} * item.first_primitive,
+      draw.indices + std::size_t{3} * (item.first_primitive + item.primitive_count));
+  for (std::uint32_t& index : indices) index -= draw.first_vertex;
+  if (!worker.geometry_batch) worker.geometry_batch = std::make_unique<GeometryBatch>();
+  run_geometry_shader_stage(context, source_of(segment, draw, item.draw), indices, item,
+                            *worker.geometry_batch, worker.chunks);
+}
+
 /// Assembles an item's primitives and sets them up.
-void build_item(const PassContext& context, const Segment& segment, GeometryItem& item,
-                std::vector<PassCounters>& chunks) {
-  item.triangles.clear();
-  item.clipped_varyings.clear();
+void assemble(const PassContext& context, const Segment& segment, GeometryItem& item,
+              std::vector<PassCounters>& chunks) {
   const DrawInfo& draw = context.draws[item.draw];
   PrimitiveSetup setup(context, source_of(segment, draw, item.draw), item);
   const std::uint32_t step = draw.indices_per_primitive();
-  const std::uint32_t* indices =
-      draw.mesh->indices.data() + draw.part->first_index + step * item.first_primitive;
+  const std::uint32_t* indices = draw.indices + step * item.first_primitive;
   for (std::uint32_t i = 0; i < item.primitive_count; ++i, indices += step) {
     const std::uint32_t primitive = draw.first_primitive + item.first_primitive + i;
     PassCounters& n = chunks[primitive / context.chunk_primitives];
@@ -45,7 +55,6 @@ void build_item(const PassContext& context, const Segment& segment, GeometryItem
         break;
     }
   }
-  bin_triangles(context, item);
 }
 
 // A draw outside the view volume: every triangle goes the way that `add` would send it.
@@ -87,22 +96,56 @@ Segment make_segment(const PassContext& context, std::uint32_t first, std::uint3
   return segment;
 }
 
-std::uint64_t run_geometry(const PassContext& context, Segment& segment, const GeometryOptions& options,
+std::uint64_t run_vertices(const PassContext& context, Segment& segment, const GeometryOptions& options,
                            std::vector<BinWorker>& workers) {
   const std::uint64_t skipped = options.skip_frustum ? mark_outside(context, segment) : 0;
   count_vertex_work(context, segment, options.cache_entries, workers[0]);
   shade_vertices(context, segment, options.jobs);
-  parallel_for(segment.items.size(), options.jobs, [&](std::size_t i, int worker) {
-    GeometryItem& item = segment.items[i];
-    std::vector<PassCounters>& chunks = workers[static_cast<std::size_t>(worker)].chunks;
+  return skipped;
+}
+
+void run_primitives(const PassContext& context, Segment& segment, int jobs, std::vector<BinWorker>& workers) {
+  parallel_for(segment.last_item - segment.first_item, jobs, [&](std::size_t i, int worker_number) {
+    GeometryItem& item = segment.items[segment.first_item + i];
+    BinWorker& worker = workers[static_cast<std::size_t>(worker_number)];
     if (segment.outside[item.draw - segment.first_draw] != 0) {
-      count_outside(context, item, chunks);
+      count_outside(context, item, worker.chunks);
       item.bin_start.assign(static_cast<std::size_t>(context.bins_x * context.bins_y) + 1, 0);
       return;
     }
-    build_item(context, segment, item, chunks);
+    if (context.draws[item.draw].batch->geometry != nullptr)
+      shade_primitives(context, segment, item, worker);
+    else
+      assemble(context, segment, item, worker.chunks);
+    bin_triangles(context, item);
   });
-  return skipped;
+}
+
+bool next_items(const PassContext& context, Segment& segment) {
+  if (segment.last_item == segment.items.size()) return false;
+  const auto shades = [&](const GeometryItem& item) {
+    return context.draws[item.draw].batch->geometry != nullptr;
+  };
+  const std::size_t built = segment.last_item - segment.first_item;
+  std::size_t triangles = 0;
+  for (std::size_t i = segment.first_item; i < segment.last_item; ++i) {
+    triangles += segment.items[i].triangles.size();
+    GeometryItem spent;  // gives its memory back
+    std::swap(spent, segment.items[i]);
+  }
+  segment.first_item = segment.last_item;
+  if (std::none_of(segment.items.begin() + static_cast<std::ptrdiff_t>(segment.first_item),
+                   segment.items.end(), shades)) {
+    segment.last_item = segment.items.size();
+    return true;
+  }
+  // As many as would fill a segment if they emit as much as the last ones did; a few to begin with.
+  constexpr std::size_t kFirstItems = 8;
+  const std::size_t next =
+      built == 0 ? kFirstItems
+                 : std::clamp<std::size_t>(built * kSegmentTriangles / (triangles + 1), 1, 4 * built);
+  segment.last_item = std::min(segment.items.size(), segment.first_item + next);
+  return true;
 }
 
 }  // namespace hwsim::pipeline

@@ -4,6 +4,9 @@
 
 namespace hwsim::pipeline {
 
+inline constexpr std::size_t kSegmentTriangles =
+    262144;  ///< bounds memory: about 150 bytes a triangle that is drawn
+
 struct GeometryOptions {
   int jobs = 1;
   int cache_entries = 32;
@@ -13,10 +16,16 @@ struct GeometryOptions {
 /// Cuts draws [first, last) into items.
 Segment make_segment(const PassContext& context, std::uint32_t first, std::uint32_t last);
 
-/// Runs all geometry work of a segment; `chunks`: one array of counters for each worker. Returns the number
-/// of draws that were skipped because they lie outside the view volume (their triangles are counted as culled
-/// all the same).
-std::uint64_t run_geometry(const PassContext& context, Segment& segment, const GeometryOptions& options,
+/// Shades the segment's vertices; `workers` hold the counters. Returns the number of draws that were skipped
+/// because they lie outside the view volume (their triangles are counted as culled all the same).
+std::uint64_t run_vertices(const PassContext& context, Segment& segment, const GeometryOptions& options,
                            std::vector<BinWorker>& workers);
+
+/// Chooses the items to build next and drops those built before; false when none is left. All of a segment's
+/// at once, but where geometry shaders run as many as memory bounds: what they emit is not known before.
+bool next_items(const PassContext& context, Segment& segment);
+
+/// Geometry shaders, set-up and binning of the segment's chosen items.
+void run_primitives(const PassContext& context, Segment& segment, int jobs, std::vector<BinWorker>& workers);
 
 }  // namespace hwsim::pipeline

@@ -87,8 +87,14 @@ std::vector<DrawInfo> MaterialViews::make_draws(const Pass& pass, const Scene& s
       draw.mesh_number = static_cast<std::uint32_t>(mesh);
       draw.part = &draw.mesh->parts[part];
       draw.material = &views_[static_cast<std::size_t>(draw.part->material)];
-      draw.first_vertex = ranges_[mesh][part].first;
-      draw.vertex_count = ranges_[mesh][part].count;
+      draw.first_vertex = call.list ? call.list->first_vertex : ranges_[mesh][part].first;
+      draw.vertex_count = call.list ? call.list->vertex_count : ranges_[mesh][part].count;
+      draw.indices =
+          call.list ? call.list->indices.data() : draw.mesh->indices.data() + draw.part->first_index;
+      draw.index_count =
+          call.list ? static_cast<std::uint32_t>(call.list->indices.size()) : draw.part->index_count;
+      draw.first_index = draw.part->first_index + (call.list ? 1u << 29 : 0u);
+      draw.index_bytes = call.list ? 4 : std::max(2, draw.mesh->index_bytes);
       set_transform(instance.world_from_local, draw);
       set_culling(batch.state.raster.cull, draw.material->double_sided, draw);
       draws.push_back(draw);

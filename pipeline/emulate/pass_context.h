@@ -1,9 +1,11 @@
 #pragma once
 // What stays the same during a pass, and what each worker thread keeps to itself.
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "pipeline/emulate/emulator.h"
+#include "pipeline/emulate/geometry_batch.h"
 #include "pipeline/emulate/segment.h"
 
 namespace hwsim::pipeline {
@@ -44,6 +46,7 @@ struct BinWorker {
 
   ResourceView resources;  ///< of the pass, with the trackers of this worker
   AccessTracker tracker;
+  std::unique_ptr<GeometryBatch> geometry_batch;  ///< made where a geometry shader runs
   std::vector<PassCounters> chunks;
   std::uint32_t current_chunk = 0;
   std::uint64_t accepted_tiles_skipped = 0;

@@ -11,7 +11,9 @@ bool in_guard_band(const double* p, const GuardBand& band) {
 }
 
 SetupRules setup_rules(const PassContext& c, const DrawInfo& draw) {
-  const bool triangles = draw.batch->state.raster.topology == Topology::triangles;
+  const GeometryProgram* geometry = draw.batch->geometry;
+  const bool triangles = geometry != nullptr ? geometry->output == GeometryOutput::triangle_strip
+                                             : draw.batch->state.raster.topology == Topology::triangles;
   return {draw.cull_back && triangles,
           draw.cull_front && triangles,
           c.width,
@@ -67,7 +69,7 @@ void PrimitiveSetup::add_triangle(std::uint32_t v0, std::uint32_t v1, std::uint3
   if (a.needs_clip || b.needs_clip || c.needs_clip) return add_clipped({v0, v1, v2});
   n.stats.clipping_primitives += 1;
   const ScreenVertex screen[3] = {a.screen, b.screen, c.screen};
-  set_up(screen, {v0, v1, v2});
+  set_up(screen, {kept_vertex(v0), kept_vertex(v1), kept_vertex(v2)});
 }
 
 ClipVertex PrimitiveSetup::clip_vertex(std::uint32_t v, std::size_t corner) const {
@@ -84,6 +86,14 @@ void PrimitiveSetup::cull_outside() {
 
 std::uint32_t PrimitiveSetup::own_vertices() const {
   return static_cast<std::uint32_t>(source_.stride == 0 ? 0 : item_.clipped_varyings.size() / source_.stride);
+}
+
+std::uint32_t PrimitiveSetup::kept_vertex(std::uint32_t v) {
+  if (!source_.temporary) return v;
+  const std::uint32_t kept = own_vertices() | kClippedVertexBit;
+  const float* from = source_.varyings + v * source_.stride;
+  item_.clipped_varyings.insert(item_.clipped_varyings.end(), from, from + source_.stride);
+  return kept;
 }
 
 void PrimitiveSetup::add_clipped(const Vertices& v) {

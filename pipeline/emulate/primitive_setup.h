@@ -17,12 +17,14 @@ struct VertexSource {
   const ShadedVertex* vertices = nullptr;
   const float* varyings = nullptr;  ///< of vertex v: varyings + v * stride
   std::size_t stride = 0;
+  bool temporary = false;  ///< varyings are copied to the item, where shading finds them later
 };
 
 /// Clips, culls and sets up the primitives of one draw, and appends what is left to an item.
 class PrimitiveSetup {
  public:
   PrimitiveSetup(const PassContext& context, const VertexSource& source, GeometryItem& item);
+  void set_source(const VertexSource& source) { source_ = source; }
 
   /// Where the following primitives' work is charged, and the number they carry.
   void start_primitive(std::uint32_t primitive, PassCounters& counters);
@@ -37,6 +39,7 @@ class PrimitiveSetup {
   ClipVertex clip_vertex(std::uint32_t v, std::size_t corner) const;
   void cull_outside();
   std::uint32_t own_vertices() const;
+  std::uint32_t kept_vertex(std::uint32_t v);
   void append_varyings(const Vertices& v, const std::array<double, 3>& weights);
   void set_up(const ScreenVertex (&screen)[3], const Vertices& v);
 

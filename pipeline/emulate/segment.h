@@ -22,6 +22,10 @@ struct DrawInfo {
   const MaterialView* material = nullptr;
   float world_from_local[16] = {};
   float normal_from_local[9] = {};
+  const std::uint32_t* indices = nullptr;  ///< of the part, or of the call's list
+  std::uint32_t index_count = 0;
+  std::uint32_t first_index = 0;  ///< place among the mesh's indices; a list's own place behind them
+  int index_bytes = 4;     ///< as fetched
   bool mirrored = false;   ///< the transform flips the winding
   bool cull_back = false;  ///< after double-sidedness and mirroring
   bool cull_front = false;
@@ -33,11 +37,11 @@ struct DrawInfo {
   std::uint32_t primitive_count() const {
     switch (batch->state.raster.topology) {
       case Topology::triangles:
-        return part->index_count / 3;
+        return index_count / 3;
       case Topology::points:
-        return part->index_count;
+        return index_count;
       case Topology::line_strip:
-        return part->index_count > 1 ? part->index_count - 1 : 0;
+        return index_count > 1 ? index_count - 1 : 0;
     }
     return 0;
   }
@@ -68,6 +72,7 @@ struct ShadedVertex {
 
 struct Segment {
   std::vector<GeometryItem> items;
+  std::size_t first_item = 0, last_item = 0;  ///< those that are built now
   std::vector<ShadedVertex> vertices;
   std::vector<float> varyings;  ///< of all draws; stride: varying_scalars of the draw's vertex program
   std::uint32_t first_draw = 0;

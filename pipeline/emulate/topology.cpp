@@ -28,7 +28,8 @@ void PrimitiveSetup::add_point(std::uint32_t v) {
     corner[i].x += i == 1 || i == 2 ? half : -half;
     corner[i].y += i >= 2 ? half : -half;
   }
-  add_quad(corner, {v, v, v, v});
+  const std::uint32_t kept = kept_vertex(v);
+  add_quad(corner, {kept, kept, kept, kept});
 }
 
 void PrimitiveSetup::add_line(std::uint32_t a, std::uint32_t b) {

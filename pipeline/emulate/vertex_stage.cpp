@@ -16,7 +16,8 @@ constexpr std::uint32_t kVertexTask = 1024;  // vertices of one parallel task
 // Every corner of the mesh's box outside one plane, with a margin for rounding: then so is every triangle.
 bool outside_view(const DrawInfo& draw) {
   const VertexProgram& program = *draw.batch->vertex;
-  if (program.clip_from_world == nullptr) return false;
+  // A geometry program may place what it emits anywhere.
+  if (program.clip_from_world == nullptr || draw.batch->geometry != nullptr) return false;
   const glm::mat4 clip =
       *program.clip_from_world(draw.batch->vertex_uniforms.get()) * glm::make_mat4(draw.world_from_local);
   int common = 63;
@@ -95,7 +96,7 @@ void count_vertices(const PassContext& context, const GeometryItem& item, std::u
   n.vs.alu_lane_ops += std::uint64_t{program.ops.alu} * misses;
   n.vs.sfu_lane_ops += std::uint64_t{program.ops.sfu} * misses;
   n.vs.output_scalars += static_cast<std::uint64_t>(program.varying_scalars + 4) * misses;
-  n.mem.index_read_bytes += indices * static_cast<std::uint64_t>(std::max(2, draw.mesh->index_bytes));
+  n.mem.index_read_bytes += indices * static_cast<std::uint64_t>(draw.index_bytes);
   n.mem.vertex_read_bytes += static_cast<std::uint64_t>(draw.mesh->vertex_bytes) * misses;
 }
 
@@ -115,14 +116,14 @@ std::vector<VertexTask> vertex_tasks(const PassContext& context, const Segment& 
   return tasks;
 }
 
-/// body(place of the index in the part, vertex) for each miss of a FIFO post-transform cache.
+/// body(place of the index, vertex) for each miss of a FIFO post-transform cache.
 template <class Body>
-void for_each_cache_miss(const Mesh& mesh, const Mesh::Part& part, int cache_entries, Body&& body) {
-  std::vector<std::uint64_t> loaded(mesh.positions.size(),
-                                    0);  // 1 + the miss by which the vertex came in last
+void for_each_cache_miss(std::span<const std::uint32_t> indices, std::size_t vertices, int cache_entries,
+                         Body&& body) {
+  std::vector<std::uint64_t> loaded(vertices, 0);  // 1 + the miss by which the vertex came in last
   std::uint64_t total = 0;
-  for (std::uint32_t i = 0; i < part.index_count; ++i) {
-    const std::uint32_t vertex = mesh.indices[part.first_index + i];
+  for (std::uint32_t i = 0; i < indices.size(); ++i) {
+    const std::uint32_t vertex = indices[i];
     std::uint64_t& at = loaded[vertex];
     if (at != 0 && total - at < static_cast<std::uint64_t>(cache_entries)) continue;
     at = ++total;
@@ -145,9 +146,9 @@ PartFetch fetch_part(const DrawInfo& draw, std::uint32_t first_line, int cache_e
   const std::uint32_t per_primitive = draw.indices_per_primitive();
   const auto vertex_bytes = static_cast<std::uint32_t>(draw.mesh->vertex_bytes);
   PartFetch fetch;
-  fetch.misses.assign((draw.part->index_count / per_primitive + kItemPrimitives - 1) / kItemPrimitives + 1,
+  fetch.misses.assign((draw.index_count / per_primitive + kItemPrimitives - 1) / kItemPrimitives + 1,
                       0);
-  for_each_cache_miss(*draw.mesh, *draw.part, cache_entries, [&](std::uint32_t i, std::uint32_t vertex) {
+  for_each_cache_miss({draw.indices, draw.index_count}, draw.mesh->positions.size(), cache_entries, [&](std::uint32_t i, std::uint32_t vertex) {
     fetch.misses[i / (per_primitive * kItemPrimitives)] += 1;
     const std::uint64_t start = std::uint64_t{vertex} * vertex_bytes, end = start + vertex_bytes;
     for (std::uint64_t line = start / kLineBytes; line * kLineBytes < end; ++line) {
@@ -158,10 +159,10 @@ PartFetch fetch_part(const DrawInfo& draw, std::uint32_t first_line, int cache_e
       fetch.reads.push_back({i / per_primitive, number, static_cast<std::uint32_t>(to - from)});
     }
   });
-  const auto index_bytes = static_cast<std::uint32_t>(std::max(2, draw.mesh->index_bytes));
+  const auto index_bytes = static_cast<std::uint32_t>(draw.index_bytes);
   const std::uint32_t in_line = kLineBytes / index_bytes;
-  for (std::uint32_t i = 0; i < draw.part->index_count; i += in_line) {
-    const std::uint32_t number = ~first_line - (draw.part->first_index + i) / in_line;
+  for (std::uint32_t i = 0; i < draw.index_count; i += in_line) {
+    const std::uint32_t number = ~first_line - (draw.first_index + i) / in_line;
     if (is_sampled(number, shift)) fetch.reads.push_back({i / per_primitive, number, kLineBytes});
   }
   std::stable_sort(fetch.reads.begin(), fetch.reads.end(),
@@ -184,11 +185,11 @@ void track_reads(const DrawInfo& draw, const GeometryItem& item, const PartFetch
 
 }  // namespace
 
-std::vector<std::uint32_t> count_cache_misses(const Mesh& mesh, const Mesh::Part& part,
+std::vector<std::uint32_t> count_cache_misses(std::span<const std::uint32_t> indices, std::size_t vertices,
                                               std::uint32_t indices_per_primitive, int cache_entries) {
-  const std::uint32_t primitives = part.index_count / indices_per_primitive;
+  const std::size_t primitives = indices.size() / indices_per_primitive;
   std::vector<std::uint32_t> misses((primitives + kItemPrimitives - 1) / kItemPrimitives + 1, 0);
-  for_each_cache_miss(mesh, part, cache_entries, [&](std::uint32_t i, std::uint32_t) {
+  for_each_cache_miss(indices, vertices, cache_entries, [&](std::uint32_t i, std::uint32_t) {
     misses[i / (indices_per_primitive * kItemPrimitives)] += 1;
   });
   return misses;
@@ -206,14 +207,14 @@ std::uint64_t mark_outside(const PassContext& context, Segment& segment) {
 void count_vertex_work(const PassContext& context, const Segment& segment, int cache_entries,
                        BinWorker& worker) {
   const int shift = worker.tracker.kinds[at(ReuseStream::geometry)].shift;
-  std::map<const Mesh::Part*, PartFetch> fetches;  // instances share their mesh's parts
+  std::map<const std::uint32_t*, PartFetch> fetches;  // instances share their mesh's indices
   for (const GeometryItem& item : segment.items) {
     const DrawInfo& draw = context.draws[item.draw];
-    auto found = fetches.find(draw.part);
+    auto found = fetches.find(draw.indices);
     if (found == fetches.end()) {
       // Meshes begin at places that a hash scatters: no list of their sizes is needed.
       const std::uint32_t first_line = block_hash(2 * draw.mesh_number + 1) >> 1;
-      found = fetches.emplace(draw.part, fetch_part(draw, first_line, cache_entries, shift)).first;
+      found = fetches.emplace(draw.indices, fetch_part(draw, first_line, cache_entries, shift)).first;
     }
     const std::uint32_t chunk = (draw.first_primitive + item.first_primitive) / context.chunk_primitives;
     count_vertices(context, item, found->second.misses[item.first_primitive / kItemPrimitives],

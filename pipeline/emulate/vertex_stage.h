@@ -4,8 +4,8 @@
 
 namespace hwsim::pipeline {
 
-/// Misses of a FIFO post-transform cache for each run of kItemPrimitives primitives of a mesh part.
-std::vector<std::uint32_t> count_cache_misses(const Mesh& mesh, const Mesh::Part& part,
+/// Misses of a FIFO post-transform cache for each run of kItemPrimitives primitives.
+std::vector<std::uint32_t> count_cache_misses(std::span<const std::uint32_t> indices, std::size_t vertices,
                                               std::uint32_t indices_per_primitive, int cache_entries);
 
 /// Marks draws that lie outside the view volume; returns their number.

@@ -15,7 +15,8 @@ void record_draws(const FrameGraph& graph, const Pass& pass, std::vector<Command
       const Mesh::Part& part = mesh.parts[static_cast<std::size_t>(call.part)];
       if (part.material != bound_material) out.push_back({CommandKind::bind_resources, b, number, 1});
       bound_material = part.material;
-      out.push_back({CommandKind::draw, b, number++, part.index_count});
+      out.push_back(
+          {CommandKind::draw, b, number++, call.list ? call.list->indices.size() : part.index_count});
     }
   }
 }

@@ -1,5 +1,6 @@
 #include "pipeline/graph/frame_graph.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace hwsim::pipeline {
@@ -9,7 +10,18 @@ std::uint64_t allocated_bytes(const ImageDesc& image) {
          static_cast<std::uint64_t>(image.samples) * info(image.format).bytes;
 }
 
-std::uint64_t allocated_bytes(const BufferDesc& buffer) { return 4 * buffer.words; }
+std::uint64_t allocated_bytes(const BufferDesc& buffer) { return buffer.contents ? 0 : 4 * buffer.words; }
+
+std::shared_ptr<const IndexList> make_index_list(std::vector<std::uint32_t> indices) {
+  auto list = std::make_shared<IndexList>();
+  if (!indices.empty()) {
+    const auto [low, high] = std::minmax_element(indices.begin(), indices.end());
+    list->first_vertex = *low;
+    list->vertex_count = *high - *low + 1;
+  }
+  list->indices = std::move(indices);
+  return list;
+}
 
 ImageId FrameGraph::add_image(ImageDesc desc) {
   images_.push_back(std::move(desc));

@@ -39,6 +39,8 @@ struct ImageDesc {
 struct BufferDesc {
   std::string name;
   std::uint64_t words = 0;  ///< 32-bit words
+  /// Scene data that is there before the frame, as meshes and textures are: it is none of the frame's memory.
+  std::shared_ptr<const std::vector<std::uint32_t>> contents = nullptr;
 };
 
 /// Bytes as allocated: width * height * samples * bytes per element. No padding: the papers' figures have
@@ -46,20 +48,36 @@ struct BufferDesc {
 std::uint64_t allocated_bytes(const ImageDesc& image);
 std::uint64_t allocated_bytes(const BufferDesc& buffer);
 
-/// One draw call: an instance's mesh part.
+/// Triangles of a mesh part chosen when the graph is built, three indices into the mesh's vertices each.
+struct IndexList {
+  std::vector<std::uint32_t> indices;
+  std::uint32_t first_vertex = 0, vertex_count = 0;  ///< the range that they use
+  std::uint64_t bytes() const { return 4 * indices.size(); }
+};
+std::shared_ptr<const IndexList> make_index_list(std::vector<std::uint32_t> indices);
+
+/// One draw call: an instance's mesh part, or a list of its triangles.
 struct DrawCall {
   int instance = 0;
   int part = 0;
+  std::shared_ptr<const IndexList> list = nullptr;
 };
 
 /// Draws that share state and programs.
 struct DrawBatch {
   PipelineState state;
   const VertexProgram* vertex = nullptr;
+  const GeometryProgram* geometry = nullptr;  ///< optional
   const FragmentProgram* fragment = nullptr;  ///< none: depth only
   std::shared_ptr<const void> vertex_uniforms;
+  std::shared_ptr<const void> geometry_uniforms;
   std::shared_ptr<const void> fragment_uniforms;
   std::vector<DrawCall> draws;
+
+  /// What the rasterizer interpolates.
+  int raster_scalars() const {
+    return geometry != nullptr ? geometry->varying_scalars : vertex->varying_scalars;
+  }
 };
 
 struct Pass {

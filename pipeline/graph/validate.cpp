@@ -160,12 +160,31 @@ class Validator {
       return;
     }
     check_state(pass, batch.state);
+    if (batch.geometry != nullptr) check_geometry(pass, batch);
     if (batch.fragment == nullptr) {
       if (!pass.color.empty())
         fail("G007", "pass `" + pass.name + "` has color attachments, but draws without a fragment program");
       return;
     }
-    check_program(pass, batch.fragment, batch.state, batch.vertex->varying_scalars);
+    check_program(pass, batch.fragment, batch.state, batch.raster_scalars());
+  }
+
+  void check_geometry(const Pass& pass, const DrawBatch& batch) {
+    const GeometryProgram& program = *batch.geometry;
+    const std::string what = "pass `" + pass.name + "`: geometry program `" + program.name + "` ";
+    if (batch.state.raster.topology != Topology::triangles)
+      fail("G007", what + "takes triangles, the draw has points or lines");
+    if (program.input_scalars != batch.vertex->varying_scalars)
+      fail("G007", what + "reads " + std::to_string(program.input_scalars) +
+                       " varyings, the vertex program writes " +
+                       std::to_string(batch.vertex->varying_scalars));
+    const int scalars = program.max_vertices * (4 + program.varying_scalars);
+    if (scalars > functional_.gs_max_scalars)
+      fail("G010",
+           what + "emits up to " + std::to_string(program.max_vertices) + " vertices of " +
+               std::to_string(4 + program.varying_scalars) + " scalars, this GPU takes " +
+               std::to_string(functional_.gs_max_scalars) + " scalars",
+           "emit fewer vertices, or gpu.functional.gs_max_scalars = " + std::to_string(scalars));
   }
 
   void check_state(const Pass& pass, const PipelineState& state) {

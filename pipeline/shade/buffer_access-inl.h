@@ -48,21 +48,33 @@ class BufferAccess {
 
   /// Returns the words before. Sums do not depend on the order; which lane sees which value does.
   LaneI add_words(LaneI index, LaneI value, LaneM mask) const {
+    return change_words(index, value, mask, [](std::uint32_t* word, std::uint32_t by) {
+      return __atomic_fetch_add(word, by, __ATOMIC_RELAXED);
+    });
+  }
+  /// Likewise, putting the values in their place.
+  LaneI exchange_words(LaneI index, LaneI value, LaneM mask) const {
+    return change_words(index, value, mask, [](std::uint32_t* word, std::uint32_t by) {
+      return __atomic_exchange_n(word, by, __ATOMIC_RELAXED);
+    });
+  }
+
+ private:
+  template <class Change>
+  LaneI change_words(LaneI index, LaneI value, LaneM mask, Change&& change) const {
     HWY_ALIGN std::int32_t at[kVectorLanes], from[kVectorLanes], out[kVectorLanes] = {};
     store(index, at);
     store(value, from);
     for (std::uint32_t bits = mask_bits(mask); bits != 0; bits &= bits - 1) {
       const int lane = __builtin_ctz(bits);
       if (!holds(at[lane])) continue;
-      out[lane] = static_cast<std::int32_t>(
-          __atomic_fetch_add(words_ + at[lane], static_cast<std::uint32_t>(from[lane]), __ATOMIC_RELAXED));
+      out[lane] =
+          static_cast<std::int32_t>(change(words_ + at[lane], static_cast<std::uint32_t>(from[lane])));
       note(lane, at[lane], 4, 4);
       tracker_->count_atomic(slot_, at[lane]);
     }
     return load(out);
   }
-
- private:
   bool holds(std::int32_t index) const { return index >= 0 && static_cast<std::uint64_t>(index) < count_; }
 
   std::uint32_t* words_;

@@ -13,17 +13,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
-class ComputeLanes {
+class ComputeLanes : public LaneFlow {
  public:
-  using F = LaneF;
-  using I = LaneI;
-  using M = LaneM;
-
   /// Pixels and samples that the invocations of this register work on; `valid`: those that work at all.
   ComputeLanes(GroupBatch& group, int first_lane, I x, I y, I sample, M valid)
-      : group_(group), first_(first_lane), x_(x), y_(y), sample_(sample), valid_(valid), live_(valid) {}
+      : LaneFlow(group.blocks, first_lane, valid), group_(group), x_(x), y_(y), sample_(sample) {}
 
-  M valid() const { return valid_; }
   I pixel_x() const { return x_; }
   I pixel_y() const { return y_; }
   I sample() const { return sample_; }
@@ -54,6 +49,10 @@ class ComputeLanes {
     group_.counters->mem.storage_write_bytes += word_bytes(mask & valid_);
     return BufferAccess(*group_.resources, slot, first_).add_words(index, value, mask & valid_);
   }
+  void tally(std::uint64_t TechniqueCounters::*counter, M mask) {
+    group_.counters->technique.*counter +=
+        static_cast<std::uint64_t>(__builtin_popcount(mask_bits(mask & live_)));
+  }
 
   /// Writes texel (x, y) of the pass's target, lanes of `mask` only; coordinates are inside the image.
   void store_image(int target, I x, I y, I sample, const Vec4<F>& color, M mask) {
@@ -77,37 +76,6 @@ class ComputeLanes {
         static_cast<std::uint64_t>(__builtin_popcount(bits)) * info(image.format).bytes;
   }
 
-  /// As FragmentLanes' (shade/fragment_lanes-inl.h).
-  template <class Body>
-  HWY_INLINE void branch(int block, M mask, Body&& body) {
-    const M outer = live_;
-    const M live = mask & outer;
-    if (!any(live)) return;
-    live_ = live;
-    count_trip(group_.blocks, block, first_, live);
-    body();
-    live_ = outer;
-  }
-  template <class Body>
-  HWY_INLINE void uniform_branch(int block, bool condition, Body&& body) {
-    if (!condition) return;
-    count_trip(group_.blocks, block, first_, live_);
-    body();
-  }
-  template <class Body>
-  HWY_INLINE void loop(int block, int count, M mask, Body&& body) {
-    const M outer = live_;
-    const M live = mask & outer;
-    if (!any(live)) return;
-    live_ = live;
-    for (int i = 0; i < count; ++i) {
-      count_trip(group_.blocks, block, first_, live);
-      body(i);
-    }
-    live_ = outer;
-  }
-  std::size_t loop_count(int count) const { return static_cast<std::size_t>(count); }
-
  private:
   /// Images that are stored to are numbered behind the buffers; a sample's tile is as many lines as a texel
   /// has bytes.
@@ -122,10 +90,7 @@ class ComputeLanes {
   }
 
   GroupBatch& group_;
-  int first_;
   I x_, y_, sample_;
-  M valid_;
-  M live_;  ///< of the valid ones, those in the current branch
 };
 
 /// Charges the blocks that a wave of `lanes` invocations went through, and starts the next wave.

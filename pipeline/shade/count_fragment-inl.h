@@ -6,6 +6,7 @@
 #include <string>
 #include "pipeline/emulate/fragment_batch.h"
 #include "pipeline/shade/count_lane.h"
+#include "pipeline/shade/texture_sampler-inl.h"
 #include "pipeline/shade/vec-inl.h"
 #if defined(HWSIM_PIPELINE_SHADE_COUNT_FRAGMENT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_PIPELINE_SHADE_COUNT_FRAGMENT_INL_H_
@@ -44,6 +45,11 @@ class CountFragment {
     const F u = attr(k), v = attr(k + 1);
     return four(made(OpKind::texture, u, v));
   }
+  Vec4<F> sample_texture_at(const TextureView*, const TextureSite<F>& at) {
+    made(OpKind::output, at.du_dx, at.dv_dx);
+    return four(made(OpKind::texture, at.u, at.v, at.du_dy));
+  }
+  F flat_attr(int k) { return attr(k); }
   Vec4<F> load_image(int, I x, I y, I sample) { return four(made(OpKind::fetch, x, y, sample)); }
   int image_width(int) const { return 1; }
   int image_height(int) const { return 1; }
@@ -72,6 +78,17 @@ class CountFragment {
     writes_storage_ = true;
     return I(made(OpKind::atomic, index, value, mask));
   }
+  I atomic_exchange(int slot, I index, I value, M mask) {
+    ordered_storage_ = true;
+    return atomic_add(slot, index, value, mask);
+  }
+  void tally(std::uint64_t TechniqueCounters::*, M) {}
+  template <class Body>
+  void loop_each(int block, I count, M mask, Body&& body) {
+    made(OpKind::output, count, mask);
+    enter(block, [&]() HWY_ATTR { body(0, M{}); });
+    recorder_.ops(block).alu += 2;
+  }
   std::size_t loop_count(int) const { return 1; }
   void store_image(int, I x, I y, I sample, const Vec4<F>& color, M mask) {
     made(OpKind::output, color.x, color.y, color.z);
@@ -89,9 +106,10 @@ class CountFragment {
   int block_count() const { return recorder_.block_count(); }
   int color_outputs() const { return color_outputs_; }
   bool writes_storage() const { return writes_storage_; }
+  bool ordered_storage() const { return ordered_storage_; }
   bool reads_coverage() const { return reads_coverage_; }
 
- private:
+ protected:
   CountValue made(OpKind kind, CountValue a = {}, CountValue b = {}, CountValue c = {}) {
     return {&recorder_, recorder_.add(kind, {a.op, b.op, c.op})};
   }
@@ -100,6 +118,9 @@ class CountFragment {
     return {F(request), F(made(OpKind::value, request)), F(made(OpKind::value, request)),
             F(made(OpKind::value, request))};
   }
+  OpRecorder& recorder() { return recorder_; }
+
+ private:
   template <class Body>
   void enter(int block, Body&& body) {
     const int outer = recorder_.block();
@@ -114,6 +135,7 @@ class CountFragment {
   int color_outputs_ = 0;
   bool reads_coverage_ = false;
   bool writes_storage_ = false;
+  bool ordered_storage_ = false;
 };
 
 /// Counts a shader and fills a program's costs.
@@ -130,6 +152,7 @@ FragmentProgram describe_fragment_shader(std::string name, void (*run)(FragmentB
   program.color_outputs = counter.color_outputs();
   program.reads_coverage = counter.reads_coverage();
   program.writes_storage = counter.writes_storage();
+  program.ordered_storage = counter.ordered_storage();
   return program;
 }
 

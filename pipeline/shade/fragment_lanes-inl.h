@@ -4,6 +4,7 @@
 #include "pipeline/emulate/fragment_batch.h"
 #include "pipeline/shade/buffer_access-inl.h"
 #include "pipeline/shade/codec-inl.h"
+#include "pipeline/shade/lane_flow-inl.h"
 #include "pipeline/shade/lanes-inl.h"
 #include "pipeline/shade/texture_sampler-inl.h"
 
@@ -16,16 +17,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
-
-/// Counts a pass of the lanes of `mask` through a block: shared by fragment and compute contexts.
-HWY_INLINE void count_trip(BlockTrips& blocks, int block, int first_lane, LaneM mask) {
-  std::int32_t* trips = blocks.trips[static_cast<std::size_t>(block)].data();
-  if ((blocks.used >> block & 1u) == 0) {
-    blocks.used |= 1u << block;
-    for (int i = 0; i < kBatchLanes; ++i) trips[i] = 0;
-  }
-  store(load(trips + first_lane) + select(mask, LaneI(1), LaneI(0)), trips + first_lane);
-}
 
 /// Reads texels of the pass's image slots: shared by fragment and compute contexts. Coordinates are clamped.
 HWY_INLINE Vec4<LaneF> load_texel(const GpuImage& image, LaneI x, LaneI y, LaneI sample) {
@@ -63,17 +54,11 @@ HWY_INLINE void track_texels(const ResourceView& resources, int slot, LaneI x, L
   track_lines(*resources.tracker, line, lanes, first_lane, static_cast<std::uint32_t>(bytes));
 }
 
-class FragmentLanes {
+class FragmentLanes : public LaneFlow {
  public:
-  using F = LaneF;
-  using I = LaneI;
-  using M = LaneM;
-
   FragmentLanes(FragmentBatch& batch, int first_lane)
-      : batch_(batch),
-        first_(first_lane),
-        valid_(mask_from_bits(batch.valid_lanes, first_lane)),
-        live_(valid_),
+      : LaneFlow(batch.blocks, first_lane, mask_from_bits(batch.valid_lanes, first_lane)),
+        batch_(batch),
         active_(mask_from_bits(batch.active_lanes, first_lane)) {
     const int quads = batch.quad_count;
     const int first_quad = first_lane / 4;
@@ -85,7 +70,6 @@ class FragmentLanes {
     }
   }
 
-  M valid() const { return valid_; }    ///< lanes of quads, helpers included
   M active() const { return active_; }  ///< fragments
   const MaterialView& material() const { return *batch_.material; }
   I pixel_x() const { return load(batch_.pixel_x.data() + first_); }
@@ -115,6 +99,21 @@ class FragmentLanes {
                           batch_.tex_bilinear_probes);
   }
 
+  /// Filtered texture at coordinates of the shader's own, with their derivatives.
+  Vec4<F> sample_texture_at(const TextureView* texture, const TextureSite<F>& at) {
+    const TextureSampler<F, I, M> sampler(*texture, batch_.resources->tracker, live_, first_);
+    return sampler.sample(at.u, at.v, at.du_dx, at.dv_dx, at.du_dy, at.dv_dy, batch_.tex_bilinear_probes);
+  }
+  /// Attribute scalar k of the triangle's first vertex.
+  F flat_attr(int k) const {
+    HWY_ALIGN float values[kVectorLanes];
+    for (int lane = 0; lane < kVectorLanes; ++lane) {
+      const auto quad = static_cast<std::size_t>(std::min((first_ + lane) / 4, batch_.quad_count - 1));
+      values[lane] = batch_.varyings[0][quad][k];
+    }
+    return load(values);
+  }
+
   /// Texel (x, y) of the pass's image slot, unfiltered; coordinates are clamped to the image.
   Vec4<F> load_image(int slot, I x, I y, I sample) {
     const GpuImage& image = *batch_.resources->images[static_cast<std::size_t>(slot)];
@@ -139,47 +138,22 @@ class FragmentLanes {
     batch_.storage_write_bytes += word_bytes(mask & active_);
     return BufferAccess(*batch_.resources, slot, first_).add_words(index, value, mask & active_);
   }
+  /// Atomic exchange; the words before it. A pass whose programs use it runs its bins one after another.
+  I atomic_exchange(int slot, I index, I value, M mask) {
+    batch_.storage_read_bytes += word_bytes(mask & active_);
+    batch_.storage_write_bytes += word_bytes(mask & active_);
+    return BufferAccess(*batch_.resources, slot, first_).exchange_words(index, value, mask & active_);
+  }
+  /// Adds the lanes of `mask` to a counter of the technique.
+  void tally(std::uint64_t TechniqueCounters::*counter, M mask) {
+    batch_.technique->*counter +=
+        static_cast<std::uint64_t>(__builtin_popcount(mask_bits(mask & active_ & live_)));
+  }
 
   int image_width(int slot) const { return batch_.resources->images[static_cast<std::size_t>(slot)]->width; }
   int image_height(int slot) const {
     return batch_.resources->images[static_cast<std::size_t>(slot)]->height;
   }
-
-  /// Runs body() if a lane of `mask` is left, and charges those lanes with the block's operations. What the
-  /// body does is charged to the same lanes: the others are there because registers are wide.
-  template <class Body>
-  HWY_INLINE void branch(int block, M mask, Body&& body) {
-    const M outer = live_;
-    const M live = mask & outer;
-    if (!any(live)) return;
-    live_ = live;
-    count_trip(batch_.blocks, block, first_, live);
-    body();
-    live_ = outer;
-  }
-  /// As branch, for a condition that is the same for all lanes.
-  template <class Body>
-  HWY_INLINE void uniform_branch(int block, bool condition, Body&& body) {
-    if (!condition) return;
-    count_trip(batch_.blocks, block, first_, live_);
-    body();
-  }
-  /// body(i) for i in [0, count), the lanes of `mask`; charged for each iteration.
-  template <class Body>
-  HWY_INLINE void loop(int block, int count, M mask, Body&& body) {
-    const M outer = live_;
-    const M live = mask & outer;
-    if (!any(live)) return;
-    live_ = live;
-    for (int i = 0; i < count; ++i) {
-      count_trip(batch_.blocks, block, first_, live);
-      body(i);
-    }
-    live_ = outer;
-  }
-
-  /// The number of elements of a uniform array: at least one where a shader is only counted.
-  std::size_t loop_count(int count) const { return static_cast<std::size_t>(count); }
 
   void discard(M mask) {
     batch_.discarded_lanes |= static_cast<std::uint64_t>(mask_bits(mask & active_ & live_)) << first_;
@@ -220,9 +194,6 @@ class FragmentLanes {
   }
 
   FragmentBatch& batch_;
-  int first_;
-  M valid_;
-  M live_;  ///< of the valid ones, those in the current branch
   M active_;
   bool one_triangle_ = true;
 };

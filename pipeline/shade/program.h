@@ -33,8 +33,9 @@ inline constexpr int kMaxBlocks = 16;
 using BlockOps = std::array<ShaderOps, kMaxBlocks>;
 
 struct FragmentBatch;  // emulate/fragment_batch.h
-struct VertexBatch;    // emulate/vertex_batch.h
-struct GroupBatch;     // emulate/group_batch.h
+struct VertexBatch;    // likewise
+struct GroupBatch;     // likewise
+struct GeometryBatch;  // emulate/geometry_batch.h
 
 struct VertexProgram {
   std::string name;
@@ -46,6 +47,20 @@ struct VertexProgram {
   const glm::mat4* (*clip_from_world)(const void* uniforms) = nullptr;
 };
 
+enum class GeometryOutput { points, triangle_strip };
+
+/// Runs on assembled triangles, between the vertex program and set-up.
+struct GeometryProgram {
+  std::string name;
+  void (*run)(GeometryBatch& batch, const void* uniforms) = nullptr;
+  BlockOps ops{};
+  int block_count = 1;
+  GeometryOutput output = GeometryOutput::triangle_strip;
+  int max_vertices = 3;     ///< emitted for one triangle at most; further ones are dropped
+  int input_scalars = 0;    ///< must equal the vertex program's varying_scalars
+  int varying_scalars = 0;  ///< written for each vertex
+};
+
 struct FragmentProgram {
   std::string name;
   void (*run)(FragmentBatch& batch, const void* uniforms) = nullptr;
@@ -55,7 +70,8 @@ struct FragmentProgram {
   int varying_scalars = 0;   ///< must equal those of the vertex program; 0 for full-screen programs
   bool can_discard = false;  ///< depth writes wait for the shader unless early tests are forced
   bool writes_storage = false;
-  bool reads_coverage = false;  ///< asks for its lanes' covered samples
+  bool ordered_storage = false;  ///< what it stores depends on the order of fragments
+  bool reads_coverage = false;   ///< asks for its lanes' covered samples
 };
 
 struct ComputeProgram {

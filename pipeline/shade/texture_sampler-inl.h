@@ -37,6 +37,11 @@ HWY_INLINE void track_lines(AccessTracker& tracker, I line, std::uint32_t lanes,
     tracker.use((first_lane + lane) / 4, ReuseStream::texture, static_cast<std::uint32_t>(number), bytes, 0);
   });
 }
+/// Texture coordinates and their change for one pixel to the right and down.
+template <class F>
+struct TextureSite {
+  F u, v, du_dx, dv_dx, du_dy, dv_dy;
+};
 
 /// Samples one texture for the lanes of `valid` (helpers included: they fetch too). A lane fetches what it
 /// needs itself, not what its neighbors in a register need: otherwise counts would depend on the register's

@@ -88,9 +88,7 @@ std::uint64_t misses_of(const std::vector<std::uint32_t>& indices, std::uint32_t
   mesh.positions.resize(vertices);
   mesh.indices = indices;
   std::uint64_t sum = 0;
-  for (const std::uint32_t n :
-       count_cache_misses(mesh, {0, static_cast<std::uint32_t>(indices.size()), 0}, 3, entries))
-    sum += n;
+  for (const std::uint32_t n : count_cache_misses(indices, mesh.positions.size(), 3, entries)) sum += n;
   return sum;
 }
 
