@@ -2,6 +2,7 @@
 // line here.
 #include "algos/deferred.h"
 #include "algos/forward_techniques.h"
+#include "algos/sss.h"
 #include "algos/technique.h"
 
 namespace hwsim::algos {
@@ -10,6 +11,7 @@ namespace {
 constexpr std::span<const TechniqueInfo> (*kFamilies[])() = {
     forward_techniques,
     deferred_techniques,
+    sss_techniques,
 };
 
 }  // namespace

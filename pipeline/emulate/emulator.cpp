@@ -170,6 +170,7 @@ class FrameRunner {
   }
 
   void bind(const Pass& pass, ResourceView& resources) {
+    resources.materials = materials_.views();
     for (std::size_t i = 0; i < pass.sampled.size(); ++i) {
       image(pass.sampled[i]).use_all(options_.jobs);
       resources.images[i] = &image(pass.sampled[i]);

@@ -42,6 +42,7 @@ struct ResourceView {
   std::array<GpuImage*, 2> targets{};  ///< compute passes: images to store to
   std::array<std::uint32_t*, kMaxBufferSlots> buffers{};
   std::array<std::uint64_t, kMaxBufferSlots> buffer_words{};
+  const MaterialView* materials = nullptr;  ///< of the scene, in its order
   std::array<std::uint32_t, kMaxImageSlots> image_first_line{};  ///< after the lines of the textures
   AccessTracker* tracker = nullptr;                              ///< of the worker
 };
@@ -121,7 +122,8 @@ struct GroupBatch {
   int width = 0, height = 0;              ///< invocations of the group
   int image_width = 0, image_height = 0;  ///< of the pass
   const ResourceView* resources = nullptr;
-  std::uint32_t* group_memory = nullptr;  ///< zeroed before the group starts
+  std::uint32_t* group_memory = nullptr;   ///< zeroed before the group starts
+  const MaterialView* material = nullptr;  ///< the program chooses one of the resources'
   const ComputeProgram* program = nullptr;
   PassCounters* counters = nullptr;
   BlockTrips blocks;  ///< of the 64 invocations of the current wave

@@ -10,14 +10,8 @@ namespace {
 
 void set_transform(const glm::mat4& world_from_local, DrawInfo& draw) {
   std::memcpy(draw.world_from_local, glm::value_ptr(world_from_local), sizeof(draw.world_from_local));
-  const glm::mat3 linear(world_from_local);
-  const float determinant = glm::determinant(linear);
-  draw.mirrored = determinant < 0.0f;
-  // The cofactor matrix is the inverse transpose times the determinant: it needs no division, so it also
-  // serves transforms that flatten; the sign keeps normals on their side.
-  const glm::mat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                           glm::cross(linear[0], linear[1]));
-  const glm::mat3 normal = cofactor * (draw.mirrored ? -1.0f : 1.0f);
+  draw.mirrored = glm::determinant(glm::mat3(world_from_local)) < 0.0f;
+  const glm::mat3 normal = normal_from_local(world_from_local);
   std::memcpy(draw.normal_from_local, glm::value_ptr(normal), sizeof(draw.normal_from_local));
 }
 
@@ -28,6 +22,15 @@ void set_culling(CullMode cull, bool double_sided, DrawInfo& draw) {
 }
 
 }  // namespace
+
+glm::mat3 normal_from_local(const glm::mat4& world_from_local) {
+  const glm::mat3 linear(world_from_local);
+  // The cofactor matrix is the inverse transpose times the determinant: it needs no division, so it also
+  // serves transforms that flatten; the sign keeps normals on their side.
+  const glm::mat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                           glm::cross(linear[0], linear[1]));
+  return cofactor * (glm::determinant(linear) < 0.0f ? -1.0f : 1.0f);
+}
 
 MaterialView make_material_view(const Material& material, int index, const TextureStore& textures) {
   MaterialView view;

@@ -12,10 +12,14 @@ MaterialView make_material_view(const Material& material, int index, const Textu
 /// Whether some mesh has tangents or vertex colors, or some texture lies on UV set 1; without, shaders are given SurfaceVaryings up to kBasic.
 bool needs_full_varyings(const Scene& scene);
 
+/// By which normals follow a transform; not normalized.
+glm::mat3 normal_from_local(const glm::mat4& world_from_local);
+
 class MaterialViews {
  public:
   MaterialViews(const Scene& scene, const TextureStore& textures);
   const MaterialView& view(int material) const { return views_[static_cast<std::size_t>(material)]; }
+  const MaterialView* views() const { return views_.data(); }
   std::vector<DrawInfo> make_draws(const Pass& pass, const Scene& scene) const;
 
  private:

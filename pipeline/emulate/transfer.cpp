@@ -37,6 +37,25 @@ void resolve_block(const GpuImage& from, GpuImage& to, int block) {
   }
 }
 
+/// The largest depth of each pixel's samples: codes order as depths do.
+void resolve_depth_block(const GpuImage& from, GpuImage& to, int block) {
+  const auto* source = reinterpret_cast<const std::int32_t*>(from.block(block));
+  auto* target = reinterpret_cast<std::int32_t*>(to.block(block));
+  std::uint32_t low = 0xffffffffu, high = 0;
+  for (int first = 0; first < kBlockLanes; first += kVectorLanes) {
+    LaneI most = load(source + first);
+    for (int s = 1; s < from.samples; ++s) most = max(most, load(source + s * kBlockLanes + first));
+    store(most, target + first);
+  }
+  for (int lane = 0; lane < kBlockLanes; ++lane) {
+    low = std::min(low, static_cast<std::uint32_t>(target[lane]));
+    high = std::max(high, static_cast<std::uint32_t>(target[lane]));
+  }
+  to.plane_count[static_cast<std::size_t>(block)] = 0;
+  to.depth_min[static_cast<std::size_t>(block)] = low;
+  to.depth_max[static_cast<std::size_t>(block)] = high;
+}
+
 /// Sample 0 of a tile, decoded: rgba[channel][lane].
 void decode_block(const GpuImage& from, int block, float (&rgba)[4][kBlockLanes]) {
   const auto* source = reinterpret_cast<const std::int32_t*>(from.block(block));
@@ -57,6 +76,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace hwsim::pipeline {
 HWY_EXPORT(resolve_block);
+HWY_EXPORT(resolve_depth_block);
 HWY_EXPORT(decode_block);
 
 Image to_linear_image(const GpuImage& from, int jobs) {
@@ -108,7 +128,8 @@ void copy_image(const GpuImage& from, GpuImage& to) {
 }
 
 void resolve_image(const GpuImage& from, GpuImage& to, int jobs) {
-  const auto resolve = HWY_DYNAMIC_DISPATCH(resolve_block);
+  const auto resolve = info(from.format).is_depth ? HWY_DYNAMIC_DISPATCH(resolve_depth_block)
+                                                  : HWY_DYNAMIC_DISPATCH(resolve_block);
   parallel_for(static_cast<std::size_t>(to.blocks_y), jobs, [&](std::size_t row, int) {
     for (int bx = 0; bx < to.blocks_x; ++bx) {
       const int block = static_cast<int>(row) * to.blocks_x + bx;
@@ -139,10 +160,12 @@ std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* sourc
         continue;
       }
       const std::uint64_t read = pixels * static_cast<std::uint64_t>(source->samples);
-      n.mem.color_read_bytes += band(read * info(source->format).bytes, i);
-      n.mem.color_write_bytes += band(pixels * samples * bytes, i);
+      const bool depth = info(source->format).is_depth;
+      (depth ? n.mem.depth_read_bytes : n.mem.color_read_bytes) += band(read * info(source->format).bytes, i);
+      (depth ? n.mem.depth_write_bytes : n.mem.color_write_bytes) += band(pixels * samples * bytes, i);
       n.resolve.read_samples += band(read, i);
       n.resolve.written_pixels += band(pixels, i);
+      if (depth) continue;  // each tile moves once
       n.crop.touched_tiles += band(tiles, i);
       n.crop.first_touched_tiles += band(tiles, i);
     }

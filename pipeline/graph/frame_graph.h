@@ -80,6 +80,8 @@ struct DrawBatch {
   }
 };
 
+enum class ResolveMode { average, max };
+
 struct Pass {
   std::string name;
   PassKind kind = PassKind::draw;
@@ -100,8 +102,9 @@ struct Pass {
   int groups_x = 0, groups_y = 0;        // compute
   std::shared_ptr<const void> uniforms;  // full_screen and compute
 
-  std::vector<ImageId> targets;  ///< clear: images; copy and resolve: the destination
-  ImageId source;                ///< copy and resolve
+  std::vector<ImageId> targets;                ///< clear: images; copy and resolve: the destination
+  ImageId source;                              ///< copy and resolve
+  ResolveMode resolve = ResolveMode::average;  ///< depth: max
   glm::vec4 clear_color{0.0f};
   float clear_depth = 1.0f;
   std::uint8_t clear_stencil = 0;

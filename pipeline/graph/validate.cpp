@@ -247,7 +247,11 @@ class Validator {
       if (from.samples < 2 || to.samples != 1)
         fail("G009", "pass `" + pass.name + "` resolves image " + text(from) + " to image " + text(to) +
                          ": the source must be multisampled, the target not");
-      if (info(from.format).is_integer || info(from.format).is_depth)
+      if (info(from.format).is_depth && pass.resolve == ResolveMode::max && from.format != to.format)
+        fail("G003", "pass `" + pass.name + "` resolves depth image " + text(from) + " to image " + text(to) +
+                         ", whose format differs");
+      else if (info(from.format).is_integer ||
+               (info(from.format).is_depth != (pass.resolve == ResolveMode::max)))
         fail("G003",
              "pass `" + pass.name + "` resolves image " + text(from) + ", whose values cannot be averaged");
     } else if (from.samples != to.samples || from.format != to.format) {

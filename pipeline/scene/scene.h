@@ -47,7 +47,7 @@ struct TextureRef {
 };
 
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
-enum class ShadingModel : std::uint8_t { blinn_phong, ggx, unlit };
+enum class ShadingModel : std::uint8_t { blinn_phong, ggx, unlit, phong };
 
 /// glTF metallic-roughness, from which both shading models derive their parameters (techniques 0.5):
 /// alpha = roughness^2, exponent = 2/alpha^2 - 2, k_s = lerp(0.04, base, metallic), albedo = base (1 -

@@ -23,6 +23,14 @@ class ComputeLanes : public LaneFlow {
   I pixel_y() const { return y_; }
   I sample() const { return sample_; }
 
+  const MaterialView& material() const { return *group_.material; }
+  /// As FragmentLanes' (shade/fragment_lanes-inl.h).
+  Vec4<F> sample_texture_at(const TextureView* texture, const TextureSite<F>& at) {
+    const TextureSampler<F, I, M> sampler(*texture, group_.resources->tracker, live_, first_);
+    return sampler.sample(at.u, at.v, at.du_dx, at.dv_dx, at.du_dy, at.dv_dy,
+                          group_.counters->tex.bilinear_probes);
+  }
+
   Vec4<F> load_image(int slot, I x, I y, I sample) {
     const GpuImage& image = *group_.resources->images[static_cast<std::size_t>(slot)];
     const auto lanes = static_cast<std::uint64_t>(__builtin_popcount(mask_bits(live_)));

@@ -54,6 +54,15 @@ Vec3<F> blinn_phong(const Surface<F>& s, const Vec3<F>& l, F n_dot_l) {
   return s.albedo * n_dot_l + s.specular * select(n_dot_l > F(0.0f), lobe, F(0.0f));
 }
 
+/// E * (rho (n.l) + k_s (r.v)^s), the second gated as above; not normalized, as the papers of its time have
+/// it.
+template <class F>
+Vec3<F> phong(const Surface<F>& s, const Vec3<F>& l, F n_dot_l) {
+  const Vec3<F> r = s.normal * (F(2.0f) * dot(s.normal, l)) - l;
+  const F lobe = pow(max(dot(r, s.to_eye), F(0.0f)), s.exponent);
+  return s.albedo * n_dot_l + s.specular * select(n_dot_l > F(0.0f), lobe, F(0.0f));
+}
+
 /// Smith separable G2, Schlick F; no 1/pi on the diffuse part (the lights' scale, techniques 0.5), so pi on
 /// the other.
 template <class F>
@@ -78,7 +87,14 @@ Vec3<F> ggx(const Surface<F>& s, const Vec3<F>& l, F n_dot_l) {
 template <class F>
 Vec3<F> reflect_light(const Surface<F>& s, const Vec3<F>& l, ShadingModel model) {
   const F n_dot_l = max(dot(s.normal, l), F(0.0f));
-  return model == ShadingModel::ggx ? ggx(s, l, n_dot_l) : blinn_phong(s, l, n_dot_l);
+  switch (model) {
+    case ShadingModel::ggx:
+      return ggx(s, l, n_dot_l);
+    case ShadingModel::phong:
+      return phong(s, l, n_dot_l);
+    default:
+      return blinn_phong(s, l, n_dot_l);
+  }
 }
 
 /// 1/d^2 windowed to zero at the range (Karis 2013), times the spot cone; `l` receives the unit direction to

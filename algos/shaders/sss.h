@@ -1,0 +1,85 @@
+#pragma once
+// Shaders of selective shader supersampling (techniques 5).
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "pipeline/graph/frame_graph.h"
+#include "pipeline/shade/lighting.h"
+
+namespace hwsim::algos {
+
+enum class SssMode { both, either };  ///< small triangle and small highlight, or one of them
+
+/// What of a vertex the samples need: by material, so that plain ones move fewer bytes.
+enum class SssVertex { plain, textured, full };
+
+/// An instance's triangles for the compute variant.
+struct SssDraw {
+  glm::mat4 world_from_local{1.0f};
+  glm::mat3 normal_from_local{1.0f};
+  bool mirrored = false;
+  int material = 0;
+};
+
+struct SssUniforms {
+  pipeline::LightingUniforms lighting;  ///< the shadow map in slot kSssShadowSlot
+  glm::mat4 clip_from_world{1.0f};
+  int width_px = 1, height_px = 1;
+
+  // Which triangles (5.1)
+  SssMode mode = SssMode::both;
+  float triangle_px = 4.0f, highlight_px = 1.0f;
+  bool early_exit = true;
+  float threshold = 1.0f / 255.0f;
+  float exponent_scale = 1.0f;  ///< Phong's exponent over the material's: a quarter for Blinn-Phong's
+  bool normalized = false;      ///< the lobe has the factor (s + 8) / (8 pi)
+
+  // How many samples, and where (5.2)
+  float samples_per_px = 16.0f, samples_min = 4.0f, samples_max = 64.0f, border_share = 0.25f;
+  float depth_bias = 0.0f, depth_slope = 1.0f;
+  float radiance_max = 1.0f;  ///< samples are clamped to it
+
+  float fixed_point_scale = 1048576.0f;  // compute points (5.3)
+  std::vector<SssDraw> draws = std::vector<SssDraw>(1);
+  int vertex_words = 8;
+
+  int grid = 4;  // lists (5.4); 0: by the highlight's width
+  int capacity_nodes = 0, node_words = 4, list_nodes_max = 32;
+  bool conservative_raster = false;
+};
+
+/// Image slots of the passes that sample.
+inline constexpr int kSssDepthSlot = 0, kSssShadowSlot = 1;
+/// Of composites: the resolved frame, then what was accumulated.
+inline constexpr int kSssFrameSlot = 0, kSssSumSlot = 1;
+
+// Points from a geometry shader
+const pipeline::GeometryProgram& sss_points_program(SssVertex vertex, int points_max);
+const pipeline::FragmentProgram& sss_point_shading_program(SssVertex vertex);
+const pipeline::FragmentProgram& sss_composite_program();
+
+// Points from a compute shader. Buffers: triangles, vertices, groups, sums.
+inline constexpr int kSssTriangleBuffer = 0, kSssVertexBuffer = 1, kSssGroupBuffer = 2, kSssSumBuffer = 3;
+inline constexpr int kSssGroupWords = 4;  ///< first triangle, triangles, draw, first triangle in the draw
+const pipeline::ComputeProgram& sss_compute_program();
+const pipeline::FragmentProgram& sss_fixed_composite_program();
+
+/// Fills buffer 0 with a word, and buffer 2, if `counter`, with one zero.
+struct SssClearUniforms {
+  int words = 0;
+  std::int32_t value = 0;
+  bool counter = false;
+};
+inline constexpr int kSssClearWords = 4;  ///< of an invocation
+
+// Lists. Buffers: heads, nodes, the counter of nodes.
+inline constexpr int kSssHeadBuffer = 0, kSssNodeBuffer = 1, kSssCounterBuffer = 2;
+const pipeline::ComputeProgram& sss_clear_program();
+const pipeline::GeometryProgram& sss_boxes_program(SssVertex vertex);
+const pipeline::FragmentProgram& sss_list_program(SssVertex vertex);
+const pipeline::FragmentProgram& sss_list_resolve_program();
+
+}  // namespace hwsim::algos

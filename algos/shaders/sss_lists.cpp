@@ -1,0 +1,467 @@
+// Per-pixel lists of what critical triangles contribute (techniques 5.4).
+#include <array>
+
+#include "algos/shaders/sss.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "algos/shaders/sss_lists.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+
+#include "algos/shaders/sss_pixel-inl.h"
+#include "algos/shaders/sss_view-inl.h"
+#include "pipeline/shade/count_fragment-inl.h"
+#include "pipeline/shade/fragment_lanes-inl.h"
+#include "pipeline/shade/geometry_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hwsim::algos::HWY_NAMESPACE {
+
+/// A box's flat varyings: of each corner x and y in 1/256 px, z, 1/w and attributes; then of the triangle.
+constexpr int corner_scalars(SssVertex vertex) { return 4 + attribute_count(vertex); }
+enum BoxScalar : int { kArea2 = 0, kGrid = 1, kBias = 2, kBoxScalars = 3 };
+constexpr int box_scalars(SssVertex vertex) { return 3 * corner_scalars(vertex) + kBoxScalars; }
+
+/// The screen bounding box of a chosen triangle, half a pixel larger on each side; or, where the rasterizer
+/// is conservative itself, the triangle.
+template <SssVertex kVertex>
+struct BoxShader {
+  using Uniforms = SssUniforms;
+  static constexpr pipeline::GeometryOutput kOutput = pipeline::GeometryOutput::triangle_strip;
+  static constexpr int kMaxVertices = 4;
+  static constexpr int kInputScalars =
+      kVertex == SssVertex::full ? pipeline::SurfaceVaryings::kFull : pipeline::SurfaceVaryings::kBasic;
+
+  template <class S>
+  static void run(S& s, const SssUniforms& u) {
+    using F = typename S::F;
+    using V = pipeline::SurfaceVaryings;
+    SssCorner<F> c[3];
+    for (int v = 0; v < 3; ++v) {
+      c[v].clip = s.clip_position(v);
+      c[v].normal = normalize(s.attr3(v, V::kNormal));
+      c[v].position = s.attr3(v, V::kPosition);
+    }
+    const SssTriangle<F> t = measure_triangle(s, u, s.winding(), c);
+    const auto chosen = select_triangles(s, u, t, c, s.valid());
+    s.branch(kStoreBlock, chosen, [&]() HWY_ATTR {
+      std::array<F, static_cast<std::size_t>(box_scalars(kVertex))> out;
+      for (int v = 0; v < 3; ++v) store_corner(s, t, c[v], v, out.data() + v * corner_scalars(kVertex));
+      F* of_triangle = out.data() + 3 * corner_scalars(kVertex);
+      of_triangle[kArea2] = t.area2;
+      of_triangle[kGrid] = u.grid > 0 ? F(static_cast<float>(u.grid)) : fitting_grid(t.highlight_px);
+      of_triangle[kBias] = t.depth_bias;
+      emit_box(s, u, c, chosen, std::span<const F>(out));
+    });
+  }
+
+ private:
+  template <class F>
+  static F fitting_grid(F highlight_px) {
+    return select(highlight_px < F(0.25f), F(8.0f), select(highlight_px < F(1.0f), F(4.0f), F(2.0f)));
+  }
+
+  template <class S, class F>
+  static void store_corner(S& s, const SssTriangle<F>& t, const SssCorner<F>& c, int v, F* out) {
+    out[0] = floor(c.x * F(256.0f) + F(0.5f));
+    out[1] = floor(c.y * F(256.0f) + F(0.5f));
+    out[2] = c.z;
+    out[3] = c.inv_w;
+    for (int k = 0; k < attribute_count(kVertex); ++k) {
+      const F value = s.attr(v, attribute_place(kVertex, k));
+      out[4 + k] = k < 3 ? value * t.facing : value;
+    }
+  }
+
+  template <class S, class F>
+  static void emit_box(S& s, const SssUniforms& u, const SssCorner<F> (&c)[3], typename S::M chosen,
+                       std::span<const F> out) {
+    if (u.conservative_raster) {
+      for (int v = 0; v < 3; ++v)
+        s.emit(chosen, {c[v].clip.x * c[v].inv_w, c[v].clip.y * c[v].inv_w, F(0.5f), F(1.0f)}, out);
+      return;
+    }
+    const F half(0.5f), wide(2.0f / static_cast<float>(u.width_px)),
+        high(2.0f / static_cast<float>(u.height_px));
+    const F left = min(min(c[0].x, c[1].x), c[2].x) - half, right = max(max(c[0].x, c[1].x), c[2].x) + half;
+    const F top = min(min(c[0].y, c[1].y), c[2].y) - half, bottom = max(max(c[0].y, c[1].y), c[2].y) + half;
+    for (int i = 0; i < 4; ++i)
+      s.emit(chosen,
+             {(i % 2 == 0 ? left : right) * wide - F(1.0f), F(1.0f) - (i < 2 ? top : bottom) * high, half,
+              F(1.0f)},
+             out);
+  }
+};
+
+/// Nodes: color and covered 64ths of the pixel, depth, the next node. 12 bytes: 8 bits of the color's square
+/// root each; 16 bytes: 16 bits linear.
+template <class S>
+struct NodeColor {
+  typename S::I words[2];
+};
+
+template <class S>
+NodeColor<S> pack_color(const SssUniforms& u, const Vec3<typename S::F>& c, typename S::F covered) {
+  using F = typename S::F;
+  using I = typename S::I;
+  const F range(1.0f / u.radiance_max);
+  const auto code = [&](F v, float most) HWY_ATTR { return to_int(floor(v * F(most) + F(0.5f))); };
+  if (u.node_words == 3) {
+    const auto root = [&](F v) HWY_ATTR { return code(sqrt(v * range), 255.0f); };
+    const I word =
+        root(c.x) | shift_left<8>(root(c.y)) | shift_left<16>(root(c.z)) | shift_left<24>(to_int(covered));
+    return {{word, I(0)}};
+  }
+  const auto linear = [&](F v) HWY_ATTR { return code(v * range, 65535.0f); };
+  return {{linear(c.x) | shift_left<16>(linear(c.y)), linear(c.z) | shift_left<16>(to_int(covered))}};
+}
+
+/// Color, and the pixel's covered part.
+template <class S>
+Vec4<typename S::F> unpack_color(const SssUniforms& u, const NodeColor<S>& node) {
+  using F = typename S::F;
+  using I = typename S::I;
+  const F range(u.radiance_max), part(1.0f / 64.0f);
+  const auto low = [&](I w) HWY_ATTR { return to_float(w & I(0xffff)) * F(1.0f / 65535.0f) * range; };
+  if (u.node_words == 3) {
+    const I w = node.words[0];
+    const auto square = [&](I code) HWY_ATTR {
+      const F root = to_float(code & I(255)) * F(1.0f / 255.0f);
+      return root * root * range;
+    };
+    return {square(w), square(shift_right<8>(w)), square(shift_right<16>(w)),
+            to_float(shift_right<24>(w) & I(255)) * part};
+  }
+  return {low(node.words[0]), low(shift_right<16>(node.words[0])), low(node.words[1]),
+          to_float(shift_right<16>(node.words[1]) & I(0xffff)) * part};
+}
+
+template <SssVertex kVertex>
+struct ListShader {
+  using Uniforms = SssUniforms;
+
+  template <class S>
+  static void run(S& s, const SssUniforms& u) {
+    using F = typename S::F;
+    using I = typename S::I;
+    constexpr int kTriangle = 3 * corner_scalars(kVertex);
+    const PixelTriangle<F> t = read_triangle(s, kTriangle);
+    const F grid = s.flat_attr(kTriangle + kGrid);
+    const F step = F(256.0f) / grid, places = grid * grid;
+    F covered(0.0f), sum_x(0.0f), sum_y(0.0f);
+    s.loop_each(kSampleBlock, to_int(places), s.valid(), [&](int i, typename S::M left) HWY_ATTR {
+      const Vec2<F> p = place(i, grid, step);
+      const F one = select(left & t.covers(p.x, p.y), F(1.0f), F(0.0f));
+      covered = covered + one;
+      sum_x = sum_x + one * p.x;
+      sum_y = sum_y + one * p.y;
+    });
+    const F share = F(1.0f) / max(covered, F(1.0f));
+    const Vec3<F> mean = t.barycentric(sum_x * share, sum_y * share);
+    const F z = mean.x * t.z[0] + mean.y * t.z[1] + mean.z * t.z[2];
+    const F scene = s.load_image(kSssDepthSlot, s.pixel_x(), s.pixel_y(), I(0)).x;
+    const auto seen = s.active() & (covered > F(0.0f)) & !((z - s.flat_attr(kTriangle + kBias)) > scene);
+    s.discard(!seen);
+    s.branch(kCriticalBlock, seen, [&]() HWY_ATTR {
+      const Vec3<F> color = mean_light(s, u, t, grid, step, seen) * share;
+      const F part = covered * (F(64.0f) / places);
+      store_node(s, u, pack_color<S>(u, color, part), z, seen);
+    });
+  }
+
+ private:
+  template <class S>
+  static PixelTriangle<typename S::F> read_triangle(S& s, int triangle_at) {
+    using F = typename S::F;
+    PixelTriangle<F> t;
+    const F left = to_float(s.pixel_x()) * F(256.0f), top = to_float(s.pixel_y()) * F(256.0f);
+    for (int v = 0; v < 3; ++v) {
+      const int at = v * corner_scalars(kVertex);
+      t.x[v] = s.flat_attr(at) - left;
+      t.y[v] = s.flat_attr(at + 1) - top;
+      t.z[v] = s.flat_attr(at + 2);
+      t.inv_w[v] = s.flat_attr(at + 3);
+    }
+    t.area2 = s.flat_attr(triangle_at + kArea2);
+    return t;
+  }
+
+  /// Centers of a regular grid over the pixel.
+  template <class F>
+  static Vec2<F> place(int i, F grid, F step) {
+    const F index(static_cast<float>(i));
+    const F row = floor((index + F(0.5f)) / grid);
+    return {(index - row * grid + F(0.5f)) * step, (row + F(0.5f)) * step};
+  }
+
+  /// Sum of the light of the covered places.
+  template <class S, class F>
+  static Vec3<F> mean_light(S& s, const SssUniforms& u, const PixelTriangle<F>& t, F grid, F step,
+                            typename S::M seen) {
+    std::array<F, static_cast<std::size_t>(3 * attribute_count(kVertex))> values;
+    for (int v = 0; v < 3; ++v)
+      for (int k = 0; k < attribute_count(kVertex); ++k)
+        values[static_cast<std::size_t>(v * attribute_count(kVertex) + k)] =
+            s.flat_attr(v * corner_scalars(kVertex) + 4 + k);
+    const F zero(0.0f);
+    Vec3<F> sum = {zero, zero, zero};
+    s.loop_each(kShadeBlock, to_int(grid * grid), seen, [&](int i, typename S::M left) HWY_ATTR {
+      const Vec2<F> p = place(i, grid, step);
+      const auto inside = left & t.covers(p.x, p.y);
+      s.branch(kStoreBlock, inside, [&]() HWY_ATTR {
+        SurfacePoint<S> point(s);
+        set_point(t, values, p, point);
+        const Vec3<F> c = light_point(s, u, point, kVertex, inside);
+        sum = select(inside, sum + c, sum);
+      });
+    });
+    return sum;
+  }
+
+  template <class S, class F, std::size_t kValues>
+  static void set_point(const PixelTriangle<F>& t, const std::array<F, kValues>& values, const Vec2<F>& p,
+                        SurfacePoint<S>& point) {
+    using V = pipeline::SurfaceVaryings;
+    constexpr int kCount = attribute_count(kVertex);
+    const Vec3<F> b = t.barycentric(p.x, p.y);
+    const Vec3<F> w = {b.x * t.inv_w[0], b.y * t.inv_w[1], b.z * t.inv_w[2]};
+    const F scale = F(1.0f) / (w.x + w.y + w.z);
+    point.values.fill(F(0.0f));
+    for (int k = 0; k < kCount; ++k) {
+      const auto at = [&](int v) HWY_ATTR { return values[static_cast<std::size_t>(v * kCount + k)]; };
+      point.values[static_cast<std::size_t>(attribute_place(kVertex, k))] =
+          (w.x * at(0) + w.y * at(1) + w.z * at(2)) * scale;
+    }
+    if constexpr (kVertex == SssVertex::plain) return;
+    // A triangle's texture coordinates change for a pixel as on its plane on the screen.
+    const auto per_px = [&](int k, F& dx, F& dy) HWY_ATTR {
+      const F inv =
+          F(256.0f) / ((t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - (t.x[2] - t.x[0]) * (t.y[1] - t.y[0]));
+      const F v0 = values[static_cast<std::size_t>(k)];
+      const F d1 = values[static_cast<std::size_t>(kCount + k)] - v0,
+              d2 = values[static_cast<std::size_t>(2 * kCount + k)] - v0;
+      dx = (d1 * (t.y[2] - t.y[0]) - d2 * (t.y[1] - t.y[0])) * inv;
+      dy = (d2 * (t.x[1] - t.x[0]) - d1 * (t.x[2] - t.x[0])) * inv;
+    };
+    per_px(V::kUv0, point.site.du_dx, point.site.du_dy);
+    per_px(V::kUv0 + 1, point.site.dv_dx, point.site.dv_dy);
+  }
+
+  template <class S, class F>
+  static void store_node(S& s, const SssUniforms& u, const NodeColor<S>& color, F z, typename S::M seen) {
+    using I = typename S::I;
+    using T = TechniqueCounters;
+    const I number = s.atomic_add(kSssCounterBuffer, I(0), I(1), seen);
+    const auto room = seen & (number < I(u.capacity_nodes));
+    s.tally(&T::sss_stored_fragments, room);
+    s.tally(&T::sss_dropped_fragments, seen & !room);
+    const I pixel = s.pixel_y() * I(u.width_px) + s.pixel_x();
+    const I next = s.atomic_exchange(kSssHeadBuffer, pixel, number, room);
+    const I at = number * I(u.node_words);
+    s.store_buffer(kSssNodeBuffer, at, float_to_bits(z), room);
+    s.store_buffer(kSssNodeBuffer, at + I(1), next, room);
+    s.store_buffer(kSssNodeBuffer, at + I(2), color.words[0], room);
+    s.uniform_branch(kHighlightSunBlock, u.node_words == 4,
+                     [&]() HWY_ATTR { s.store_buffer(kSssNodeBuffer, at + I(3), color.words[1], room); });
+  }
+};
+
+/// Front to back: sorted by depth, ties by color, so that the order of insertion does not show.
+struct ListResolveShader {
+  using Uniforms = SssUniforms;
+  static constexpr int kMost = 64;
+  enum Block : int { kRead = 1, kSort = 2, kBlend = 3, kLong = 4 };
+
+  template <class S>
+  static void run(S& s, const SssUniforms& u) {
+    using F = typename S::F;
+    using I = typename S::I;
+    const Vec4<F> frame = s.load_image(kSssFrameSlot, s.pixel_x(), s.pixel_y(), I(0));
+    Nodes<S> nodes;
+    const int read = read_list(s, u, nodes);
+    const F zero(0.0f);
+    F share = zero;
+    Vec3<F> sum = {zero, zero, zero};
+    for (int i = 0; i < static_cast<int>(s.loop_count(read)); ++i) {
+      const auto open = s.active() & (I(i) < nodes.count) & (share < F(1.0f - 1e-4f));
+      if (!any(open)) break;
+      s.branch(kBlend, open, [&]() HWY_ATTR {
+        const Vec4<F> c = unpack_color<S>(u, nodes.color[static_cast<std::size_t>(i)]);
+        const F g = select(open, min(c.w, F(1.0f) - share), F(0.0f));
+        sum = sum + Vec3<F>{c.x, c.y, c.z} * g;
+        share = share + g;
+      });
+    }
+    const F rest = F(1.0f) - share;
+    s.output(0, {sum.x + rest * frame.x, sum.y + rest * frame.y, sum.z + rest * frame.z, frame.w});
+  }
+
+ private:
+  template <class S>
+  struct Nodes {
+    std::array<typename S::F, kMost> z;
+    std::array<NodeColor<S>, kMost> color;
+    typename S::I count;
+  };
+
+  template <class S>
+  static int read_list(S& s, const SssUniforms& u, Nodes<S>& nodes) {
+    using I = typename S::I;
+    const I pixel = s.pixel_y() * I(u.width_px) + s.pixel_x();
+    I next = s.load_buffer(kSssHeadBuffer, pixel, s.active());
+    nodes.count = I(0);
+    const int most = static_cast<int>(s.loop_count(std::min(u.list_nodes_max, kMost)));
+    int read = 0;
+    while (read < most) {
+      const auto more = s.active() & (I(-1) < next);
+      if (!any(more)) break;
+      s.branch(kRead, more, [&]() HWY_ATTR { read_node(s, u, more, read, next, nodes); });
+      ++read;
+    }
+    tally_lengths(s, nodes.count, s.active() & (I(-1) < next));
+    return read;
+  }
+
+  template <class S>
+  static void read_node(S& s, const SssUniforms& u, typename S::M more, int read, typename S::I& next,
+                        Nodes<S>& nodes) {
+    using F = typename S::F;
+    using I = typename S::I;
+    const I at = next * I(u.node_words);
+    F z = bits_to_float(s.load_buffer(kSssNodeBuffer, at, more));
+    const I after = s.load_buffer(kSssNodeBuffer, at + I(1), more);
+    NodeColor<S> color{{s.load_buffer(kSssNodeBuffer, at + I(2), more), I(0)}};
+    s.uniform_branch(kLong, u.node_words == 4,
+                     [&]() HWY_ATTR { color.words[1] = s.load_buffer(kSssNodeBuffer, at + I(3), more); });
+    // Each lane inserts its node among the `read` that it has: an exchange with every place in turn.
+    for (int i = 0; i < static_cast<int>(s.loop_count(read)); ++i)
+      s.branch(kSort, more, [&]() HWY_ATTR { exchange(nodes, static_cast<std::size_t>(i), more, z, color); });
+    const auto place = static_cast<std::size_t>(read);
+    nodes.z[place] = z;
+    nodes.color[place] = color;
+    nodes.count = nodes.count + select(more, I(1), I(0));
+    next = select(more, after, next);
+  }
+
+  template <class S, class F>
+  static void exchange(Nodes<S>& nodes, std::size_t i, typename S::M more, F& z, NodeColor<S>& color) {
+    const NodeColor<S> there = nodes.color[i];
+    const F there_z = nodes.z[i];
+    const auto same_z = !((z < there_z) | (there_z < z));
+    const auto first = (color.words[0] < there.words[0]) |
+                       ((color.words[0] == there.words[0]) & (color.words[1] < there.words[1]));
+    const auto swap = more & ((z < there_z) | (same_z & first));
+    nodes.z[i] = select(swap, z, there_z);
+    z = select(swap, there_z, z);
+    for (int w = 0; w < 2; ++w) {
+      nodes.color[i].words[w] = select(swap, color.words[w], there.words[w]);
+      color.words[w] = select(swap, there.words[w], color.words[w]);
+    }
+  }
+
+  template <class S, class M>
+  static void tally_lengths(S& s, typename S::I count, M longer) {
+    using I = typename S::I;
+    using T = TechniqueCounters;
+    const auto between = [&](int low, int high)
+                             HWY_ATTR { return s.active() & (I(low - 1) < count) & (count < I(high + 1)); };
+    s.tally(&T::sss_list_1_pixels, between(1, 1));
+    s.tally(&T::sss_list_2_to_3_pixels, between(2, 3));
+    s.tally(&T::sss_list_4_to_7_pixels, between(4, 7));
+    s.tally(&T::sss_list_8_to_15_pixels, between(8, 15));
+    s.tally(&T::sss_list_16_to_31_pixels, between(16, 31));
+    s.tally(&T::sss_list_from_32_pixels, between(32, kMost));
+    s.tally(&T::sss_truncated_pixels, longer);
+  }
+};
+
+template <SssVertex kVertex>
+void run_boxes(pipeline::GeometryBatch& b, const void* u) {
+  lanes::run_geometry_shader<BoxShader<kVertex>>(b, u);
+}
+template <SssVertex kVertex>
+void run_lists(pipeline::FragmentBatch& b, const void* u) {
+  lanes::run_fragment_shader<ListShader<kVertex>>(b, u);
+}
+void run_boxes_plain(pipeline::GeometryBatch& b, const void* u) { run_boxes<SssVertex::plain>(b, u); }
+void run_boxes_textured(pipeline::GeometryBatch& b, const void* u) { run_boxes<SssVertex::textured>(b, u); }
+void run_boxes_full(pipeline::GeometryBatch& b, const void* u) { run_boxes<SssVertex::full>(b, u); }
+void run_lists_plain(pipeline::FragmentBatch& b, const void* u) { run_lists<SssVertex::plain>(b, u); }
+void run_lists_textured(pipeline::FragmentBatch& b, const void* u) { run_lists<SssVertex::textured>(b, u); }
+void run_lists_full(pipeline::FragmentBatch& b, const void* u) { run_lists<SssVertex::full>(b, u); }
+void run_list_resolve(pipeline::FragmentBatch& b, const void* u) {
+  lanes::run_fragment_shader<ListResolveShader>(b, u);
+}
+
+}  // namespace hwsim::algos::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace hwsim::algos {
+HWY_EXPORT(run_boxes_plain);
+HWY_EXPORT(run_boxes_textured);
+HWY_EXPORT(run_boxes_full);
+HWY_EXPORT(run_lists_plain);
+HWY_EXPORT(run_lists_textured);
+HWY_EXPORT(run_lists_full);
+HWY_EXPORT(run_list_resolve);
+
+namespace {
+using pipeline::FragmentBatch;
+using pipeline::FragmentProgram;
+using pipeline::GeometryBatch;
+using pipeline::GeometryProgram;
+namespace shaders = HWY_NAMESPACE;
+
+template <SssVertex kVertex>
+GeometryProgram describe_boxes(void (*run)(GeometryBatch&, const void*)) {
+  return pipeline::HWY_NAMESPACE::describe_geometry_shader<shaders::BoxShader<kVertex>>("sss_boxes", run);
+}
+template <SssVertex kVertex>
+FragmentProgram describe_list(void (*run)(FragmentBatch&, const void*)) {
+  FragmentProgram program =
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<shaders::ListShader<kVertex>>("sss_list", run);
+  program.varying_scalars = shaders::box_scalars(kVertex);
+  program.can_discard = true;
+  return program;
+}
+}  // namespace
+
+const GeometryProgram& sss_boxes_program(SssVertex vertex) {
+  static const GeometryProgram programs[] = {
+      describe_boxes<SssVertex::plain>([](GeometryBatch& b, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_boxes_plain)(b, u);
+      }),
+      describe_boxes<SssVertex::textured>([](GeometryBatch& b, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_boxes_textured)(b, u);
+      }),
+      describe_boxes<SssVertex::full>([](GeometryBatch& b, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_boxes_full)(b, u);
+      })};
+  return programs[static_cast<std::size_t>(vertex)];
+}
+
+const FragmentProgram& sss_list_program(SssVertex vertex) {
+  static const FragmentProgram programs[] = {
+      describe_list<SssVertex::plain>([](FragmentBatch& b, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_lists_plain)(b, u);
+      }),
+      describe_list<SssVertex::textured>([](FragmentBatch& b, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_lists_textured)(b, u);
+      }),
+      describe_list<SssVertex::full>([](FragmentBatch& b, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_lists_full)(b, u);
+      })};
+  return programs[static_cast<std::size_t>(vertex)];
+}
+
+const FragmentProgram& sss_list_resolve_program() {
+  static const FragmentProgram program =
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<shaders::ListResolveShader>(
+          "sss_list_resolve", [](FragmentBatch& b, const void* u) {
+            HWY_DYNAMIC_DISPATCH(run_list_resolve)(b, u);
+          });
+  return program;
+}
+
+}  // namespace hwsim::algos
+#endif
