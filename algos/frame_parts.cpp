@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "algos/wire_draws.h"
 #include "pipeline/emulate/material_views.h"
 #include "pipeline/shade/mesh_vertex.h"
 
@@ -11,9 +12,25 @@ namespace hwsim::algos {
 namespace {
 using namespace pipeline;
 
-DrawLists list_draws(const Scene& scene, const Camera& camera) {
+/// Opaque wires are drawn apart where the request says so.
+bool is_wire(const FrameRequest& request, const Mesh& mesh, const Material& material) {
+  return request.wires && !mesh.radius.empty() && material.alpha_mode == AlphaMode::opaque;
+}
+
+using ByDepth = std::vector<std::pair<float, DrawCall>>;
+
+std::vector<DrawCall> back_to_front(ByDepth calls) {
+  std::stable_sort(calls.begin(), calls.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<DrawCall> sorted;
+  for (auto& [z, call] : calls) sorted.push_back(std::move(call));
+  return sorted;
+}
+
+DrawLists list_draws(const FrameRequest& request, const Camera& camera) {
+  const Scene& scene = *request.scene;
   DrawLists lists;
-  std::vector<std::pair<float, DrawCall>> blended;
+  ByDepth blended, wires;
   for (int i = 0; i < static_cast<int>(scene.instances.size()); ++i) {
     const Instance& instance = scene.instances[static_cast<std::size_t>(i)];
     const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
@@ -21,7 +38,12 @@ DrawLists list_draws(const Scene& scene, const Camera& camera) {
     const float view_z = (camera.view_from_world * instance.world_from_local * glm::vec4(center, 1.0f)).z;
     for (int p = 0; p < static_cast<int>(mesh.parts.size()); ++p) {
       const Mesh::Part& part = mesh.parts[static_cast<std::size_t>(p)];
-      switch (scene.materials[static_cast<std::size_t>(part.material)].alpha_mode) {
+      const Material& material = scene.materials[static_cast<std::size_t>(part.material)];
+      if (is_wire(request, mesh, material)) {
+        wires.push_back({view_z, sorted_wires(scene, camera, {i, p})});
+        continue;
+      }
+      switch (material.alpha_mode) {
         case AlphaMode::opaque:
           lists.opaque.push_back({i, p});
           break;
@@ -34,9 +56,8 @@ DrawLists list_draws(const Scene& scene, const Camera& camera) {
       }
     }
   }
-  std::stable_sort(blended.begin(), blended.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (const auto& [z, call] : blended) lists.blend.push_back(call);
+  lists.blend = back_to_front(std::move(blended));
+  lists.wires = back_to_front(std::move(wires));
   return lists;
 }
 
@@ -124,6 +145,7 @@ void add_shadow_map(FrameGraph& graph, FrameParts& parts) {
   pass.width = pass.height = size;
   pass.depth = parts.shadow_map;
   pass.batches.push_back(depth_batch(clip, parts.draws.opaque, false));
+  if (!parts.draws.wires.empty()) pass.batches.push_back(depth_batch(clip, parts.draws.wires, false));
   if (!parts.draws.mask.empty()) pass.batches.push_back(depth_batch(clip, parts.draws.mask, true));
   const float half = 0.5f * static_cast<float>(size);
   const glm::mat4 texels = glm::translate(glm::mat4(1.0f), glm::vec3(half, half, 0.0f)) *
@@ -200,7 +222,7 @@ FrameParts prepare_frame(FrameGraph& graph, const FrameRequest& request) {
   parts.camera = scene.cameras.at(static_cast<std::size_t>(request.camera));
   const float aspect = static_cast<float>(request.width_px) / static_cast<float>(request.height_px);
   parts.clip_from_world = clip_from_view(parts.camera, aspect) * parts.camera.view_from_world;
-  parts.draws = list_draws(scene, parts.camera);
+  parts.draws = list_draws(request, parts.camera);
   parts.full_varyings = needs_full_varyings(scene);
   parts.lighting = frame_lighting(request);
   add_shadow_map(graph, parts);
@@ -230,6 +252,8 @@ void add_forward(FrameGraph& graph, const FrameParts& parts, const std::string& 
 
 void add_blended(FrameGraph& graph, const FrameParts& parts, const std::string& name,
                  const ForwardTarget& target) {
+  add_wires(graph, parts,
+            name.ends_with("blended") ? name.substr(0, name.size() - 7) + "wires" : name + "_wires", target);
   if (parts.draws.blend.empty()) return;
   Pass& pass = add_target_pass(graph, parts, name, target);
   DrawBatch batch = surface_batch(parts, target, parts.draws.blend, false);

@@ -14,6 +14,7 @@ struct DrawLists {
   std::vector<pipeline::DrawCall> opaque;
   std::vector<pipeline::DrawCall> mask;   ///< alpha-tested
   std::vector<pipeline::DrawCall> blend;  ///< back to front
+  std::vector<pipeline::DrawCall> wires;  ///< back to front; only where wire anti-aliasing is asked for
 };
 
 struct FrameParts {
@@ -46,7 +47,8 @@ struct ForwardTarget {
 void add_forward(pipeline::FrameGraph& graph, const FrameParts& parts, const std::string& prefix,
                  const ForwardTarget& target);
 
-/// Draws of blended materials into lit color, depth tested and not written.
+/// What goes over lit color: wires where wire anti-aliasing is asked for, then draws of blended materials,
+/// depth tested and not written.
 void add_blended(pipeline::FrameGraph& graph, const FrameParts& parts, const std::string& name,
                  const ForwardTarget& target);
 

@@ -4,6 +4,7 @@
 #include "algos/forward_techniques.h"
 #include "algos/sss.h"
 #include "algos/technique.h"
+#include "algos/wire_aa.h"
 
 namespace hwsim::algos {
 namespace {
@@ -12,6 +13,7 @@ constexpr std::span<const TechniqueInfo> (*kFamilies[])() = {
     forward_techniques,
     deferred_techniques,
     sss_techniques,
+    wire_techniques,
 };
 
 }  // namespace

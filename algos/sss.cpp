@@ -9,6 +9,7 @@
 #include "algos/frame_parts.h"
 #include "algos/shaders/sss.h"
 #include "algos/sss_classify.h"
+#include "algos/wire_draws.h"
 #include "pipeline/emulate/material_views.h"
 #include "pipeline/shade/mesh_vertex.h"
 
@@ -77,11 +78,17 @@ struct SssFrame {
 };
 
 SssVertex vertex_of(const FrameParts& parts, const Material& material, const Mesh& mesh) {
-  const bool full = material.normal_texture.texture >= 0 || !mesh.colors.empty();
+  const std::array<const TextureRef*, 5> textures = {
+      &material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
+      &material.emissive_texture, &material.occlusion_texture};
+  const auto any = [&](auto&& what) {
+    return std::any_of(textures.begin(), textures.end(),
+                       [&](const TextureRef* t) { return t->texture >= 0 && what(*t); });
+  };
+  const bool full = material.normal_texture.texture >= 0 || !mesh.colors.empty() ||
+                    any([](const TextureRef& t) { return t.uv_set == 1; });
   if (parts.full_varyings && full) return SssVertex::full;
-  for (const TextureRef& t : {material.base_color_texture, material.metallic_roughness_texture,
-                              material.normal_texture, material.emissive_texture, material.occlusion_texture})
-    if (t.texture >= 0) return SssVertex::textured;
+  if (any([](const TextureRef&) { return true; })) return SssVertex::textured;
   return SssVertex::plain;
 }
 
@@ -129,6 +136,25 @@ SssUniforms make_uniforms(const FrameGraph& graph, const FrameParts& parts, cons
   return u;
 }
 
+/// The paper presumes opaque solids. What is blended over them writes no depth, so samples behind it would
+/// replace it: its depth is drawn apart, and they keep away.
+void add_overlay_depth(FrameGraph& graph, const SssFrame& f) {
+  ForwardTarget target;
+  target.width = graph.width();
+  target.height = graph.height();
+  std::vector<DrawBatch> batches = {wire_depth_batch(f.parts, target)};
+  DrawBatch& blended = batches.emplace_back();
+  blended.state = opaque_state(target);
+  blended.vertex = &mesh_position_program();
+  blended.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{f.parts.clip_from_world});
+  blended.draws = f.parts.draws.blend;
+  std::erase_if(batches, [](const DrawBatch& batch) { return batch.draws.empty(); });
+  if (batches.empty()) return;
+  Pass& pass = graph.add_pass("overlay_depth", PassKind::draw);
+  pass.depth = f.depth;
+  pass.batches = std::move(batches);
+}
+
 /// The multisampled frame. With critical triangles, what the further passes start from; without, the output.
 SssFrame start_frame(FrameGraph& graph, const FrameRequest& request, const Parameters& p) {
   constexpr int kSamples = 8;
@@ -147,6 +173,7 @@ SssFrame start_frame(FrameGraph& graph, const FrameRequest& request, const Param
   graph.add_resolve("resolve", f.base.color, f.resolved);
   f.depth = graph.add_image({"depth", graph.image(f.base.depth).format, graph.width(), graph.height(), 1});
   graph.add_resolve("depth_resolve", f.base.depth, f.depth).resolve = ResolveMode::max;
+  add_overlay_depth(graph, f);
   f.uniforms = make_uniforms(graph, f.parts, p);
   return f;
 }
@@ -286,6 +313,7 @@ class ComputeData {
       for (int k = 0; k < 4; ++k)
         put(mesh.tangents.empty() ? (k == 0 || k == 3 ? 1.0f : 0.0f) : mesh.tangents[i][k]);
       for (int k = 0; k < 4; ++k) put(mesh.colors.empty() ? 1.0f : mesh.colors[i][k]);
+      for (int k = 0; k < 2; ++k) put(mesh.uv1.empty() ? 0.0f : mesh.uv1[i][k]);
     }
   }
 

@@ -2,6 +2,7 @@
 // A technique builds a frame graph and owns its shaders; it runs nothing.
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,6 +15,18 @@ namespace hwsim::algos {
 
 enum class DeferredLighting { stencil, compute_tiles };
 
+enum class WireDepth { split, none, all };  ///< which wires write depth: wide ones, none, all
+
+/// Wire anti-aliasing (techniques 6), asked for by the modifier wire_aa.
+struct WireOptions {
+  float width_px = 1.0f;       ///< least width
+  float full_light_px = 4.0f;  ///< from this width on a wire is lit as any surface
+  bool half_lambert = false, flatten = false;
+  int half_lambert_power = 2;
+  bool fade_per_pixel = false;
+  WireDepth depth = WireDepth::split;
+};
+
 /// What every technique is given.
 struct FrameRequest {
   std::shared_ptr<const pipeline::Scene> scene;
@@ -22,6 +35,7 @@ struct FrameRequest {
   int point_lights = 0;  ///< 0..1024 seeded point lights added to those of the scene
   bool shadows = true;   ///< a shadow map for the scene's shadow caster
   int shadow_map_px = 2048;
+  std::optional<WireOptions> wires;
   GpuFeatures features;
   FunctionalConfig functional;
 };

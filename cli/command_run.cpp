@@ -133,6 +133,7 @@ void Run::record(const PointResult& point) {
   rows_.push_back(summary_row(point));
   results_.push_back(result_json(point, plan_, scene));
   context_.log.detail(headline(point, plan_, scene));
+  for (const Diagnostic& warning : result_warnings(point)) context_.log.report(warning);
   if (!alone) return;
   heading_ = headline(point, plan_, scene) + "\n";
   single_ = pass_table(point);

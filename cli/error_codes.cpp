@@ -42,6 +42,9 @@ constexpr ErrorCode kCodes[] = {
     {"T004", "impossible combination",
      "Techniques are combined with +: any modifiers, one base, any filters, each once. The message says what "
      "excludes what."},
+    {"T101", "lists overflowed",
+     "Per-pixel lists had too little memory, or were longer than the resolve reads: the image is "
+     "incomplete."},
     {"X001", "internal error",
      "hwsim broke one of its own rules. That is never your input's fault: please report the message and the "
      "manifest."},

@@ -115,7 +115,26 @@ Json result_json(const PointResult& point, const RunPlan& plan, const std::strin
   json["timing"] = {{"wall_s", point.timing_wall_s}};
   if (const auto& sampled = point.timing.sampling_interval_ns)
     json["timing"]["sampling_interval_ms"] = {(*sampled)[0] / kNsPerMs, (*sampled)[1] / kNsPerMs};
+  for (const Diagnostic& warning : result_warnings(point)) json["warnings"].push_back(warning.message);
   return json;
+}
+
+std::vector<Diagnostic> result_warnings(const PointResult& point) {
+  std::vector<Diagnostic> warnings;
+  const TechniqueCounters n = total(point.emulation->trace).technique;
+  const std::string name = algos::technique_text(*point.technique);
+  const auto warn = [&](std::string message, std::string help) {
+    warnings.push_back({Severity::warning, "T101", std::move(message), {}, {}, {}, std::move(help)});
+  };
+  if (n.sss_dropped_fragments > 0)
+    warn(fmt::format("{}: {} of {} fragments found the lists full: the image lacks them", name,
+                     n.sss_dropped_fragments, n.sss_dropped_fragments + n.sss_stored_fragments),
+         fmt::format("capacity_nodes={} holds all", n.sss_dropped_fragments + n.sss_stored_fragments));
+  if (n.sss_truncated_pixels > 0)
+    warn(fmt::format("{}: the lists of {} pixels are longer than the resolve reads", name,
+                     n.sss_truncated_pixels),
+         "list_cap reads up to 64");
+  return warnings;
 }
 
 std::string headline_time(const FrameTiming& timing) {

@@ -144,26 +144,34 @@ F shadow_visibility(S& s, const LightingUniforms& u, const Vec3<F>& position, co
   return upper + (lower - upper) * fy;
 }
 
-/// Ambient, emissive, directional lights and the given point lights. `mask`: lanes that are lit at all.
-template <class S, class F, class M>
-Vec3<F> light_surface(S& s, const LightingUniforms& u, std::span<const PointLight> points,
-                      const Surface<F>& surface, M mask) {
-  Vec3<F> sum = surface.emissive + surface.albedo * broadcast<F>(u.ambient);
+/// body(unit direction to the light, its color as it arrives) for directional lights and the given point
+/// lights. `mask`: lanes that are lit at all.
+template <class S, class F, class M, class Body>
+void for_each_light(S& s, const LightingUniforms& u, std::span<const PointLight> points,
+                    const Surface<F>& surface, M mask, Body&& body) {
   s.loop(kDirectionalBlock, u.directional_count, mask, [&](int i) HWY_ATTR {
     const DirectionalLight& light = u.directional[static_cast<std::size_t>(i)];
     F visible(1.0f);
     s.uniform_branch(kShadowBlock, light.shadowed && u.shadow_slot >= 0,
                      [&]() HWY_ATTR { visible = shadow_visibility(s, u, surface.position, surface.normal); });
-    sum = sum + reflect_light(surface, broadcast<F>(light.to_light), u.model) *
-                    (broadcast<F>(light.color) * visible);
+    body(broadcast<F>(light.to_light), broadcast<F>(light.color) * visible);
   });
   s.loop(kPointBlock, static_cast<int>(points.size()), mask, [&](int i) HWY_ATTR {
     const PointLight& light = points[static_cast<std::size_t>(i)];
     Vec3<F> l;
     const F attenuation = point_attenuation(light, surface.position, l);
-    s.branch(kPointInRangeBlock, mask & (attenuation > F(0.0f)), [&]() HWY_ATTR {
-      sum = sum + reflect_light(surface, l, u.model) * (broadcast<F>(light.color) * attenuation);
-    });
+    s.branch(kPointInRangeBlock, mask & (attenuation > F(0.0f)),
+             [&]() HWY_ATTR { body(l, broadcast<F>(light.color) * attenuation); });
+  });
+}
+
+/// Ambient, emissive, directional lights and the given point lights.
+template <class S, class F, class M>
+Vec3<F> light_surface(S& s, const LightingUniforms& u, std::span<const PointLight> points,
+                      const Surface<F>& surface, M mask) {
+  Vec3<F> sum = surface.emissive + surface.albedo * broadcast<F>(u.ambient);
+  for_each_light(s, u, points, surface, mask, [&](const Vec3<F>& l, const Vec3<F>& light) HWY_ATTR {
+    sum = sum + reflect_light(surface, l, u.model) * light;
   });
   return sum;
 }

@@ -1,21 +1,19 @@
 #include "pipeline/shade/mesh_vertex.h"
 
 #include "pipeline/emulate/fragment_batch.h"
-#include "pipeline/shade/count_lane.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pipeline/shade/mesh_vertex.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
-#include "pipeline/shade/lanes-inl.h"
-#include "pipeline/shade/vec-inl.h"
+#include "pipeline/shade/vertex_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
 enum class MeshOutput { position, uv, surface, full };
 
-/// S offers F, the attributes and matrices, and the outputs: VertexLanes below, or CountVertex.
+/// S offers F, the attributes and matrices, and the outputs (shade/vertex_lanes-inl.h).
 template <MeshOutput kOutput>
 struct MeshVertexShader {
   template <class S>
@@ -53,83 +51,9 @@ struct MeshVertexShader {
   }
 };
 
-/// Attribute names, in the order of VertexBatch.
-struct VertexAttributes {
-  static constexpr int kPosition = 0, kNormal = 1, kTangent = 2, kUv = 3, kColor = 4, kUv1 = 5, kAlphaUv = 6;
-};
-
-class CountVertex : public VertexAttributes {
- public:
-  using F = CountF;
-  F attribute(int, int) { return F(CountValue{&recorder_, recorder_.add(OpKind::value, {-1, -1, -1})}); }
-  Vec3<F> attribute3(int a) { return {attribute(a, 0), attribute(a, 1), attribute(a, 2)}; }
-  F constant(float c) { return F(c); }
-  F world(int, const Vec3<F>& v) { return ((F(1.0f) * v.x + F(1.0f) * v.y) + F(1.0f) * v.z) + F(1.0f); }
-  F world_direction(int, const Vec3<F>& v) { return (F(1.0f) * v.x + F(1.0f) * v.y) + F(1.0f) * v.z; }
-  F normal(int row, const Vec3<F>& v) { return world_direction(row, v); }
-  void clip(int, F value) { recorder_.add(OpKind::output, {value.op, -1, -1}); }
-  void varying(int index, F value) {
-    recorder_.add(OpKind::output, {value.op, -1, -1});
-    varyings_ = std::max(varyings_, index + 1);
-  }
-  ShaderOps ops() const { return recorder_.finish()[0]; }
-  int varyings() const { return varyings_; }
-
- private:
-  OpRecorder recorder_;
-  int varyings_ = 0;
-};
-
-class VertexLanes : public VertexAttributes {
- public:
-  using F = LaneF;
-  VertexLanes(VertexBatch& batch, int first) : b_(batch), first_(first) {}
-
-  F attribute(int attribute, int component) const {
-    switch (attribute) {
-      case kPosition:
-        return load(b_.position[component] + first_);
-      case kNormal:
-        return load(b_.normal[component] + first_);
-      case kTangent:
-        return load(b_.tangent[component] + first_);
-      case kUv:
-        return load(b_.uv0[component] + first_);
-      case kUv1:
-        return load(b_.uv1[component] + first_);
-      case kAlphaUv:
-        return load((b_.alpha_uv_set == 1 ? b_.uv1 : b_.uv0)[component] + first_);
-      default:
-        return load(b_.color[component] + first_);
-    }
-  }
-  Vec3<F> attribute3(int a) const { return {attribute(a, 0), attribute(a, 1), attribute(a, 2)}; }
-  F constant(float c) const { return F(c); }
-  F world(int row, const Vec3<F>& v) const {
-    return world_direction(row, v) + F(b_.world_from_local[12 + row]);
-  }
-  F world_direction(int row, const Vec3<F>& v) const {
-    const float* m = b_.world_from_local + row;
-    return (F(m[0]) * v.x + F(m[4]) * v.y) + F(m[8]) * v.z;
-  }
-  F normal(int row, const Vec3<F>& v) const {
-    const float* m = b_.normal_from_local + row;
-    return (F(m[0]) * v.x + F(m[3]) * v.y) + F(m[6]) * v.z;
-  }
-  void clip(int row, F value) { store(value, b_.clip_position[row] + first_); }
-  void varying(int index, F value) { store(value, b_.varyings[index] + first_); }
-
- private:
-  VertexBatch& b_;
-  int first_;
-};
-
 template <MeshOutput kOutput>
 void run_mesh_vertex(VertexBatch& batch, const void* uniforms) {
-  for (int first = 0; first < batch.count; first += kVectorLanes) {
-    VertexLanes s(batch, first);
-    MeshVertexShader<kOutput>::run(s, *static_cast<const MeshVertexUniforms*>(uniforms));
-  }
+  run_vertex_shader<MeshVertexShader<kOutput>>(batch, *static_cast<const MeshVertexUniforms*>(uniforms));
 }
 void run_position(VertexBatch& b, const void* u) { run_mesh_vertex<MeshOutput::position>(b, u); }
 void run_uv(VertexBatch& b, const void* u) { run_mesh_vertex<MeshOutput::uv>(b, u); }
@@ -151,10 +75,12 @@ using HWY_NAMESPACE::MeshOutput;
 
 template <MeshOutput kOutput>
 VertexProgram describe(std::string name, void (*run)(VertexBatch&, const void*)) {
-  HWY_NAMESPACE::CountVertex counter;
-  HWY_NAMESPACE::MeshVertexShader<kOutput>::run(counter, MeshVertexUniforms{});
-  return {std::move(name), run, counter.ops(), counter.varyings(),
-          [](const void* u) { return &static_cast<const MeshVertexUniforms*>(u)->clip_from_world; }};
+  VertexProgram program = HWY_NAMESPACE::describe_vertex_shader<HWY_NAMESPACE::MeshVertexShader<kOutput>>(
+      std::move(name), run, MeshVertexUniforms{});
+  program.clip_from_world = [](const void* u) {
+    return &static_cast<const MeshVertexUniforms*>(u)->clip_from_world;
+  };
+  return program;
 }
 }  // namespace
 

@@ -34,9 +34,8 @@ void check_draw(const FrameGraph& graph, const Pass& pass, const PassCounters& n
   EXPECT_EQ(n.stats.input_assembly_vertices, 3 * triangles);
   EXPECT_LE(n.stats.vertex_shader_invocations, 3 * triangles);
   EXPECT_GT(n.stats.vertex_shader_invocations, 0u);
-  if (pass.depth) {
-    EXPECT_EQ(n.hiz.tested_tiles, n.raster.visited_tiles);  // such draws of these techniques test depth
-  }
+  if (!pass.depth) return;
+  EXPECT_EQ(n.hiz.tested_tiles, n.raster.visited_tiles);  // such draws of these techniques test depth
   EXPECT_EQ(n.zrop.early_z_tested_samples - n.zrop.early_z_killed_samples + n.zrop.late_z_tested_samples -
                 n.zrop.late_z_killed_samples,
             n.stats.samples_passed);
