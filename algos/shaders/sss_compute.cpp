@@ -215,16 +215,20 @@ HWY_EXPORT(run_sss_compute);
 HWY_EXPORT(run_sss_clear);
 
 const pipeline::ComputeProgram& sss_compute_program() {
-  static const pipeline::ComputeProgram program = HWY_NAMESPACE::describe_sss_compute(
-      [](pipeline::GroupBatch& g, const void* u) { HWY_DYNAMIC_DISPATCH(run_sss_compute)
-                                                   (g, u); });
+  static const pipeline::ComputeProgram program =
+      HWY_NAMESPACE::describe_sss_compute([](pipeline::GroupBatch& g, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_sss_compute)
+        (g, u);
+      });
   return program;
 }
 
 const pipeline::ComputeProgram& sss_clear_program() {
-  static const pipeline::ComputeProgram program = HWY_NAMESPACE::describe_sss_clear(
-      [](pipeline::GroupBatch& g, const void* u) { HWY_DYNAMIC_DISPATCH(run_sss_clear)
-                                                   (g, u); });
+  static const pipeline::ComputeProgram program =
+      HWY_NAMESPACE::describe_sss_clear([](pipeline::GroupBatch& g, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_sss_clear)
+        (g, u);
+      });
   return program;
 }
 

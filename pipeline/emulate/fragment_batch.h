@@ -42,7 +42,7 @@ struct ResourceView {
   std::array<GpuImage*, 2> targets{};  ///< compute passes: images to store to
   std::array<std::uint32_t*, kMaxBufferSlots> buffers{};
   std::array<std::uint64_t, kMaxBufferSlots> buffer_words{};
-  const MaterialView* materials = nullptr;  ///< of the scene, in its order
+  const MaterialView* materials = nullptr;                       ///< of the scene, in its order
   std::array<std::uint32_t, kMaxImageSlots> image_first_line{};  ///< after the lines of the textures
   AccessTracker* tracker = nullptr;                              ///< of the worker
 };

@@ -25,9 +25,9 @@ struct DrawInfo {
   const std::uint32_t* indices = nullptr;  ///< of the part, or of the call's list
   std::uint32_t index_count = 0;
   std::uint32_t first_index = 0;  ///< place among the mesh's indices; a list's own place behind them
-  int index_bytes = 4;     ///< as fetched
-  bool mirrored = false;   ///< the transform flips the winding
-  bool cull_back = false;  ///< after double-sidedness and mirroring
+  int index_bytes = 4;            ///< as fetched
+  bool mirrored = false;          ///< the transform flips the winding
+  bool cull_back = false;         ///< after double-sidedness and mirroring
   bool cull_front = false;
   std::uint32_t first_vertex = 0, vertex_count = 0;  ///< range of the mesh's vertices that the part uses
   std::uint32_t first_primitive = 0;                 ///< number in the pass of its first primitive

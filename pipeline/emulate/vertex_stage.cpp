@@ -146,19 +146,20 @@ PartFetch fetch_part(const DrawInfo& draw, std::uint32_t first_line, int cache_e
   const std::uint32_t per_primitive = draw.indices_per_primitive();
   const auto vertex_bytes = static_cast<std::uint32_t>(draw.mesh->vertex_bytes);
   PartFetch fetch;
-  fetch.misses.assign((draw.index_count / per_primitive + kItemPrimitives - 1) / kItemPrimitives + 1,
-                      0);
-  for_each_cache_miss({draw.indices, draw.index_count}, draw.mesh->positions.size(), cache_entries, [&](std::uint32_t i, std::uint32_t vertex) {
-    fetch.misses[i / (per_primitive * kItemPrimitives)] += 1;
-    const std::uint64_t start = std::uint64_t{vertex} * vertex_bytes, end = start + vertex_bytes;
-    for (std::uint64_t line = start / kLineBytes; line * kLineBytes < end; ++line) {
-      const std::uint32_t number = first_line + static_cast<std::uint32_t>(line);
-      if (!is_sampled(number, shift)) continue;
-      const std::uint64_t from = std::max(start, line * kLineBytes),
-                          to = std::min(end, (line + 1) * kLineBytes);
-      fetch.reads.push_back({i / per_primitive, number, static_cast<std::uint32_t>(to - from)});
-    }
-  });
+  fetch.misses.assign((draw.index_count / per_primitive + kItemPrimitives - 1) / kItemPrimitives + 1, 0);
+  for_each_cache_miss(
+      {draw.indices, draw.index_count}, draw.mesh->positions.size(), cache_entries,
+      [&](std::uint32_t i, std::uint32_t vertex) {
+        fetch.misses[i / (per_primitive * kItemPrimitives)] += 1;
+        const std::uint64_t start = std::uint64_t{vertex} * vertex_bytes, end = start + vertex_bytes;
+        for (std::uint64_t line = start / kLineBytes; line * kLineBytes < end; ++line) {
+          const std::uint32_t number = first_line + static_cast<std::uint32_t>(line);
+          if (!is_sampled(number, shift)) continue;
+          const std::uint64_t from = std::max(start, line * kLineBytes),
+                              to = std::min(end, (line + 1) * kLineBytes);
+          fetch.reads.push_back({i / per_primitive, number, static_cast<std::uint32_t>(to - from)});
+        }
+      });
   const auto index_bytes = static_cast<std::uint32_t>(draw.index_bytes);
   const std::uint32_t in_line = kLineBytes / index_bytes;
   for (std::uint32_t i = 0; i < draw.index_count; i += in_line) {
