@@ -136,17 +136,18 @@ void add_overlay_depth(FrameGraph& graph, const SssFrame& f) {
   ForwardTarget target;
   target.width = graph.width();
   target.height = graph.height();
-  std::vector<DrawBatch> batches = {wire_depth_batch(f.parts, target)};
-  DrawBatch& blended = batches.emplace_back();
+  const DrawBatch wires = wire_depth_batch(f.parts, target);
+  if (wires.draws.empty() && f.parts.draws.blend.empty()) return;
+  Pass& pass = graph.add_pass("overlay_depth", PassKind::draw);
+  pass.depth = f.depth;
+  if (!wires.draws.empty()) pass.batches.push_back(wires);
+  if (f.parts.draws.blend.empty()) return;
+  DrawBatch blended;
   blended.state = opaque_state(target);
   blended.vertex = &mesh_position_program();
   blended.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{f.parts.clip_from_world});
   blended.draws = f.parts.draws.blend;
-  std::erase_if(batches, [](const DrawBatch& batch) { return batch.draws.empty(); });
-  if (batches.empty()) return;
-  Pass& pass = graph.add_pass("overlay_depth", PassKind::draw);
-  pass.depth = f.depth;
-  pass.batches = std::move(batches);
+  pass.batches.push_back(std::move(blended));
 }
 
 /// The multisampled frame. With critical triangles, what the further passes start from; without, the output.
