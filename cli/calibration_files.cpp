@@ -26,4 +26,14 @@ std::string gpu_file(const std::string& name) {
   return fs::exists(path, error) ? path.string() : name;
 }
 
+void add_interval(FrameTiming& timing, const WorkTrace& trace, const GpuConfig& gpu,
+                  const std::string& technique) {
+  const std::optional<cost_models::Calibration> calibration = load_calibration();
+  if (!calibration) return;
+  const cost_models::FrameInterval found =
+      cost_models::frame_interval(*calibration, trace, gpu, technique, timing.engine);
+  timing.support = found.support;
+  timing.interval_ns = found.interval_ns;
+}
+
 }  // namespace hwsim::cli

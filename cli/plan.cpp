@@ -7,6 +7,7 @@
 #include <set>
 
 #include "cli/argument_values.h"
+#include "cli/calibration_files.h"
 #include "cli/files.h"
 #include "cli/help_texts.h"
 #include "cli/messages.h"
@@ -45,12 +46,16 @@ void describe(Visitor& v, EmulatorSettings& s) {
 struct TimingSettings {
   std::string engine = "queue";
   double detailed_sample = 1.0;
+  bool calibrated = true;
 };
 template <class Visitor>
 void describe(Visitor& v, TimingSettings& s) {
   v.key({"engine", 0, 0, kNoFlags, "roofline, queue or detailed"}, s.engine);
   v.key({"detailed_sample", 1e-3, 1, kNoFlags, "engine detailed: part of a pass that is simulated"},
         s.detailed_sample);
+  v.key(
+      {"calibrated", 0, 0, kNoFlags, "the fitted numbers of a GPU, where there are, not the documented ones"},
+      s.calibrated);
 }
 
 constexpr std::array<std::string_view, 3> kLightProfiles = {"scene", "simple", "complex"};
@@ -177,11 +182,12 @@ std::vector<algos::TechniqueChoice> plan_techniques(const std::vector<std::strin
 
 std::vector<GpuConfig> plan_gpus(const std::vector<std::string>& names,
                                  const std::vector<std::string>& overlays,
-                                 const std::vector<Assignment>& sets, std::vector<Diagnostic>& problems) {
+                                 const std::vector<Assignment>& sets, bool calibrated,
+                                 std::vector<Diagnostic>& problems) {
   std::vector<GpuConfig> gpus;
   const std::string directory = gpu_directory();
   for (const std::string& name : names) try {
-      gpus.push_back(load_gpu(name, overlays, sets, directory));
+      gpus.push_back(load_gpu(calibrated ? gpu_file(name) : name, overlays, sets, directory));
     } catch (const InputError& error) {
       append(problems, error);
     }
@@ -251,7 +257,7 @@ RunPlan make_run_plan(const RunOptions& options) {
   file.view.scene = options.view.scene;
   if (options.view.scene.ends_with(".toml")) file = read_run_file(options.view.scene);
   EmulatorSettings emulator{file.skip};
-  TimingSettings timing{file.engine, file.detailed_sample};
+  TimingSettings timing{file.engine, file.detailed_sample, true};
   apply_settings("emulator", keys_of(emulator), sets, problems);
   apply_settings("timing", keys_of(timing), sets, problems);
 
@@ -264,7 +270,7 @@ RunPlan make_run_plan(const RunOptions& options) {
   plan.techniques = plan_techniques(
       options.techniques.empty() ? std::vector{file.technique} : options.techniques, sets, problems);
   plan.gpus = plan_gpus(options.gpus.empty() ? std::vector{file.gpu} : options.gpus, options.overlays, sets,
-                        problems);
+                        timing.calibrated, problems);
   plan.reference_samples = options.reference_samples.value_or(file.reference_samples);
   plan.images = !options.no_image;
   if (!problems.empty()) throw InputError(problems);

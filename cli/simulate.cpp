@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "cli/cache.h"
+#include "cli/calibration_files.h"
 #include "cli/messages.h"
 #include "pipeline/scene/scene_source.h"
 
@@ -92,6 +93,7 @@ PointResult Simulator::run(const algos::TechniqueChoice& technique, const GpuCon
   point.timing = time_frame(point.emulation->trace, gpu, plan_.engine, plan_.timing);
   point.timing_wall_s = seconds_since(start);
   check_invariants(point.emulation->trace, point.timing, gpu);
+  add_interval(point.timing, point.emulation->trace, gpu, algos::technique_text(technique));
   measure_image(point);
   return point;
 }

@@ -1,0 +1,141 @@
+// What a fit leaves behind, and errors on data that it did not see, on an experiment whose truth is known.
+#include "cost_models/calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "cost_models/synthetic.h"
+
+namespace hwsim::cost_models::test {
+namespace {
+
+Validation validate_quietly(const Experiment& experiment) {
+  return validate(experiment, FitOptions{}, [](std::size_t, std::size_t, const std::string&) {});
+}
+
+const SplitResult& split_of(const Validation& validation, Split split) {
+  return validation.splits.at(static_cast<std::size_t>(split));
+}
+
+class CalibrationTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    synthetic_ = std::make_unique<Synthetic>(make_synthetic(3, 4));
+    add_noise(synthetic_->experiment, 5.0);
+    validation_ = std::make_unique<Validation>(validate_quietly(synthetic_->experiment));
+  }
+  static void TearDownTestSuite() {
+    validation_.reset();
+    synthetic_.reset();
+  }
+  static const Experiment& experiment() { return synthetic_->experiment; }
+  static std::unique_ptr<Synthetic> synthetic_;
+  static std::unique_ptr<Validation> validation_;
+};
+std::unique_ptr<Synthetic> CalibrationTest::synthetic_;
+std::unique_ptr<Validation> CalibrationTest::validation_;
+
+TEST_F(CalibrationTest, NoiseOfFivePercentLeavesErrorsBelowIt) {
+  EXPECT_LT(split_of(*validation_, Split::in_sample).figures.mape_pct, 5.0);
+  EXPECT_EQ(split_of(*validation_, Split::in_sample).figures.cells, experiment().cells.size());
+  EXPECT_GT(split_of(*validation_, Split::in_sample).figures.kendall, 0.8);
+}
+
+TEST_F(CalibrationTest, EveryCellIsHeldOutOnce) {
+  for (const Split split : {Split::leave_scene_out, Split::leave_technique_out, Split::leave_gpu_out}) {
+    std::vector<std::size_t> seen;
+    for (const HeldOut& held : split_of(*validation_, split).cells) seen.push_back(held.cell);
+    std::sort(seen.begin(), seen.end());
+    EXPECT_EQ(std::unique(seen.begin(), seen.end()), seen.end()) << split_name(split);
+    EXPECT_EQ(seen.size(), experiment().cells.size()) << split_name(split);
+  }
+  EXPECT_TRUE(split_of(*validation_, Split::rate_extrapolation).cells.empty()) << "all rows have one rate";
+}
+
+TEST_F(CalibrationTest, HoldingOutNeverHelps) {
+  const double in_sample = split_of(*validation_, Split::in_sample).figures.mape_pct;
+  for (const Split split : {Split::leave_scene_out, Split::leave_technique_out, Split::leave_gpu_out})
+    EXPECT_GE(split_of(*validation_, split).figures.mape_pct, in_sample) << split_name(split);
+}
+
+TEST_F(CalibrationTest, IntervalsCoverAboutNinetyPercentOfHeldOutCells) {
+  const Figures& figures = split_of(*validation_, Split::leave_technique_out).figures;
+  EXPECT_GE(figures.coverage90_pct, 80.0);
+}
+
+TEST_F(CalibrationTest, SimulationBeatsTheSimpleRules) {
+  const SplitResult& split = split_of(*validation_, Split::leave_technique_out);
+  ASSERT_EQ(split.baselines.size(), 3u);
+  for (const auto& [name, figures] : split.baselines) {
+    EXPECT_EQ(figures.cells, split.figures.cells) << name;
+    EXPECT_LT(split.figures.mape_pct, figures.mape_pct) << name;
+  }
+}
+
+TEST_F(CalibrationTest, JsonHoldsTheCalibrationToTheBit) {
+  const Calibration c = make_calibration(experiment(), *validation_);
+  const Calibration back = calibration_from_json(to_json(c), "calibration.json");
+  EXPECT_EQ(back.covariance, c.covariance);
+  EXPECT_EQ(back.quantile90, c.quantile90);
+  EXPECT_EQ(back.held_out_ms, c.held_out_ms);
+  ASSERT_EQ(back.parameters.size(), c.parameters.size());
+  for (std::size_t i = 0; i < c.parameters.size(); ++i)
+    EXPECT_EQ(back.parameters[i].value, c.parameters[i].value);
+  const std::optional<Fit> fit = fit_of(back, experiment().parameters);
+  ASSERT_TRUE(fit);
+  for (std::size_t i = 0; i < fit->log_values.size(); ++i)
+    EXPECT_NEAR(fit->log_values[i], validation_->fit.log_values[i], 1e-12);
+  EXPECT_FALSE(fit_of(back, {}));
+}
+
+TEST_F(CalibrationTest, DamagedJsonIsRefused) {
+  const std::string text = to_json(make_calibration(experiment(), *validation_));
+  EXPECT_THROW(calibration_from_json("", "c.json"), InputError);
+  EXPECT_THROW(calibration_from_json(text.substr(0, text.size() / 2), "c.json"), InputError);
+  EXPECT_THROW(calibration_from_json("{\"schema_version\": 1}", "c.json"), InputError);
+}
+
+TEST_F(CalibrationTest, GpuFilesAreCompleteAndLoad) {
+  const Calibration c = make_calibration(experiment(), *validation_);
+  const GpuConfig fitted = calibrated_gpu(experiment().gpus.front(), c);
+  const std::string path = testing::TempDir() + "/a.toml";
+  std::ofstream(path) << show(fitted, false);
+  const GpuConfig loaded = load_gpu(path, {}, {}, testing::TempDir());
+  EXPECT_EQ(content_hash(loaded), content_hash(fitted));
+  const Origin& origin = loaded.origins.at("dram_efficiency_ratio");
+  EXPECT_EQ(origin.provenance, Provenance::fitted);
+  ASSERT_TRUE(origin.interval);
+  EXPECT_LE((*origin.interval)[0], loaded.dram_efficiency_ratio);
+  EXPECT_GE((*origin.interval)[1], loaded.dram_efficiency_ratio);
+  EXPECT_NE(loaded.dram_efficiency_ratio, experiment().gpus.front().dram_efficiency_ratio);
+}
+
+TEST_F(CalibrationTest, FramesCarryIntervalsThatWidenWithDistance) {
+  const Calibration c = make_calibration(experiment(), *validation_);
+  const GpuConfig gpu = calibrated_gpu(experiment().gpus.front(), c);
+  const auto trace = random_trace(4711);
+  const auto width = [](const FrameInterval& i) { return (*i.interval_ns)[1] / (*i.interval_ns)[0]; };
+  const FrameInterval known = frame_interval(c, *trace, gpu, "t1:x=2", Engine::queue);
+  const FrameInterval unknown = frame_interval(c, *trace, gpu, "other", Engine::queue);
+  GpuConfig changed = gpu;
+  changed.dram_bandwidth_gb_s *= 2.0;
+  const FrameInterval what_if = frame_interval(c, *trace, changed, "t1", Engine::queue);
+  EXPECT_EQ(known.support, Support::calibrated);
+  EXPECT_EQ(unknown.support, Support::extrapolated);
+  EXPECT_EQ(what_if.support, Support::extrapolated);
+  ASSERT_TRUE(known.interval_ns && unknown.interval_ns && what_if.interval_ns);
+  EXPECT_LE(width(known), width(unknown));
+  const double time_ns = time_frame(*trace, gpu, Engine::queue).time_ns;
+  EXPECT_LT((*known.interval_ns)[0], time_ns);
+  EXPECT_GT((*known.interval_ns)[1], time_ns);
+  GpuConfig other = gpu;
+  other.id = "never seen";
+  EXPECT_EQ(frame_interval(c, *trace, other, "t1", Engine::queue).support, Support::uncalibrated);
+  EXPECT_FALSE(frame_interval(c, *trace, gpu, "t1", Engine::roofline).interval_ns);
+}
+
+}  // namespace
+}  // namespace hwsim::cost_models::test
