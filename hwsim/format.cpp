@@ -5,7 +5,7 @@
 namespace hwsim {
 namespace {
 using enum RateClass;
-constexpr std::array<FormatInfo, 31> kFormats = {{
+constexpr std::array<FormatInfo, 30> kFormats = {{
     // name            ch bytes class       float  int    depth  stencil
     {"none", 0, 0, bits32, false, false, false, false},
     {"r8_unorm", 1, 1, bits32, false, false, false, false},
@@ -37,7 +37,6 @@ constexpr std::array<FormatInfo, 31> kFormats = {{
     {"d32_float", 1, 4, depth, true, false, true, false},
     {"d32_float_s8", 1, 8, depth, true, false, true, true},
     {"s8_uint", 1, 1, depth, false, false, true, true},
-    {"rg16_uint", 2, 4, bits32, false, true, false, false},
 }};
 static_assert(kFormats.size() == static_cast<std::size_t>(kLastFormat) + 1);
 }  // namespace

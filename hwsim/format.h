@@ -38,9 +38,8 @@ enum class Format : std::uint8_t {
   d32_float,
   d32_float_s8,
   s8_uint,
-  rg16_uint,
 };
-inline constexpr Format kLastFormat = Format::rg16_uint;
+inline constexpr Format kLastFormat = Format::s8_uint;
 
 /// The class by which ROP, export and texture rates are tabulated (gpus section 5).
 enum class RateClass : std::uint8_t { bits32, srgb32, half4_64, float1_32, bits64, float4_128, depth };
