@@ -78,11 +78,17 @@ struct SssFrame {
 };
 
 SssVertex vertex_of(const FrameParts& parts, const Material& material, const Mesh& mesh) {
-  const bool full = material.normal_texture.texture >= 0 || !mesh.colors.empty();
+  const std::array<const TextureRef*, 5> textures = {
+      &material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
+      &material.emissive_texture, &material.occlusion_texture};
+  const auto any = [&](auto&& what) {
+    return std::any_of(textures.begin(), textures.end(),
+                       [&](const TextureRef* t) { return t->texture >= 0 && what(*t); });
+  };
+  const bool full = material.normal_texture.texture >= 0 || !mesh.colors.empty() ||
+                    any([](const TextureRef& t) { return t.uv_set == 1; });
   if (parts.full_varyings && full) return SssVertex::full;
-  for (const TextureRef& t : {material.base_color_texture, material.metallic_roughness_texture,
-                              material.normal_texture, material.emissive_texture, material.occlusion_texture})
-    if (t.texture >= 0) return SssVertex::textured;
+  if (any([](const TextureRef&) { return true; })) return SssVertex::textured;
   return SssVertex::plain;
 }
 
@@ -308,6 +314,7 @@ class ComputeData {
       for (int k = 0; k < 4; ++k)
         put(mesh.tangents.empty() ? (k == 0 || k == 3 ? 1.0f : 0.0f) : mesh.tangents[i][k]);
       for (int k = 0; k < 4; ++k) put(mesh.colors.empty() ? 1.0f : mesh.colors[i][k]);
+      for (int k = 0; k < 2; ++k) put(mesh.uv1.empty() ? 0.0f : mesh.uv1[i][k]);
     }
   }
 

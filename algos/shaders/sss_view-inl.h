@@ -22,11 +22,11 @@ using lanes::Vec4;
 /// Blocks beyond those of materials and lighting.
 enum SssBlock : int {
   kCriticalBlock = 10,
-  kHighlightSunBlock = 11,
   kHighlightPointBlock = 12,
   kSampleBlock = 13,
   kShadeBlock = 14,
-  kStoreBlock = 15
+  kStoreBlock = 15,
+  kHighlightSunBlock = 16
 };
 
 /// Attribute scalars of a vertex beside its position on the screen, in the order of SurfaceVaryings but
@@ -261,6 +261,7 @@ class SurfacePoint {
   F attr(int k) const { return values[static_cast<std::size_t>(k)]; }
   Vec3<F> attr3(int k) const { return {attr(k), attr(k + 1), attr(k + 2)}; }
   F facing() const { return F(1.0f); }  // normals were turned already
+  /// The level of detail is that of UV set 0 for both sets.
   Vec4<F> sample_texture(const pipeline::TextureView* texture, int k) {
     site.u = attr(k);
     site.v = attr(k + 1);
@@ -293,7 +294,8 @@ Vec3<typename S::F> light_point(S& s, const SssUniforms& u, SurfacePoint<S>& poi
   const auto material = lanes::sample_material(point, vertex == SssVertex::full);
   const auto surface =
       lanes::make_surface(material, point.attr3(pipeline::SurfaceVaryings::kPosition), u.lighting.eye);
-  const Vec3<F> c = lanes::light_surface(point, u.lighting, surface, mask);
+  const Vec3<F> c = lanes::occlude_ambient(point, u.lighting, surface,
+                                           lanes::light_surface(point, u.lighting, surface, mask));
   s.count(&TechniqueCounters::sss_shaded_samples, mask);
   const F most(u.radiance_max);
   const auto limited = [&](F x) HWY_ATTR { return min(max(x, F(0.0f)), most); };

@@ -49,6 +49,8 @@ struct WireVertexShader {
     for (int r = 0; r < 3; ++r) s.varying(V::kTangent + r, s.world_direction(r, t));
     s.varying(V::kTangent + 3, s.attribute(S::kTangent, 3));
     for (int i = 0; i < 4; ++i) s.varying(V::kColor + i, s.attribute(S::kColor, i));
+    s.varying(V::kUv1, s.attribute(S::kUv1, 0));
+    s.varying(V::kUv1 + 1, s.attribute(S::kUv1, 1));
     s.varying(WireVaryings::kFade, select(thin, r_true / max(r_least, s.constant(1e-30f)), s.constant(1.0f)));
     s.varying(WireVaryings::kRadius, r_true);
     s.varying(WireVaryings::kW, w);
@@ -93,8 +95,9 @@ struct WireShader {
     const F share = lanes::saturate((true_px - F(1.0f)) * F(1.0f / (u.options.full_light_px - 1.0f)));
     if (u.options.flatten) material.normal = flattened(s, u, position, material.normal, share);
     const auto surface = lanes::make_surface(material, position, u.lighting.eye);
-    const Vec3<F> c = u.options.half_lambert ? half_lambert(s, u, surface, share, lit)
-                                             : lanes::light_surface(s, u.lighting, surface, lit);
+    const Vec3<F> light = u.options.half_lambert ? half_lambert(s, u, surface, share, lit)
+                                                 : lanes::light_surface(s, u.lighting, surface, lit);
+    const Vec3<F> c = lanes::occlude_ambient(s, u.lighting, surface, light);
     s.output(0, {c.x, c.y, c.z, material.base.w * fade});
   }
 

@@ -293,8 +293,10 @@ class BinDepth {
     int last = -1;
     for (std::size_t q = 0; q < static_cast<std::size_t>(w_.batch.quad_count); ++q) {
       const int block = w_.block[q];
-      // A tile whose fragments were all discarded may still wait for its clear: its bounds are the clear's.
-      if (block == last || c_.depth->cleared[static_cast<std::size_t>(block)] != 0) continue;
+      // A tile whose fragments were all discarded may still wait for its clear, or be held as planes: its
+      // texels are not its depth then, and its bounds are right.
+      const auto i = static_cast<std::size_t>(block);
+      if (block == last || c_.depth->cleared[i] != 0 || c_.depth->plane_count[i] != 0) continue;
       last = block;
       read_bounds(*c_.depth, block);
     }

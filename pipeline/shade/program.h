@@ -29,7 +29,7 @@ struct ShaderOps {
 };
 
 /// A shader is cut into blocks at its branches and loops. Block 0 runs for every lane.
-inline constexpr int kMaxBlocks = 16;
+inline constexpr int kMaxBlocks = 17;
 using BlockOps = std::array<ShaderOps, kMaxBlocks>;
 
 struct FragmentBatch;  // emulate/fragment_batch.h

@@ -17,6 +17,7 @@ constexpr float kFovY = 0.6f;
 struct WireScene {
   float radius = 0.01f, distance = 10.0f, y = 0.0f, slope = 0.0f;
   bool emissive = true;
+  bool wall = false;  ///< a black one behind it
 };
 
 float pixel_height_m(float distance) { return 2.0f * distance * std::tan(0.5f * kFovY) / kHeight; }
@@ -56,7 +57,22 @@ std::shared_ptr<const Scene> make(const WireScene& w) {
   mesh.bounds_max = glm::vec3(half, w.y + 1.0f, 1.0f);
   scene.meshes.push_back(std::move(mesh));
   scene.instances.push_back({0, glm::mat4(1.0f), "wire"});
-  scene.materials.emplace_back();
+  if (w.wall) {
+    Mesh wall;
+    const float far = 4.0f * w.distance;
+    wall.positions = {{-far, -far, -1}, {far, -far, -1}, {far, far, -1}, {-far, far, -1}};
+    wall.normals.assign(4, glm::vec3(0, 0, 1));
+    wall.indices = {0, 1, 2, 0, 2, 3};
+    wall.parts = {{0, 6, 1}};
+    wall.vertex_bytes = 24;
+    wall.bounds_min = glm::vec3(-far, -far, -1);
+    wall.bounds_max = glm::vec3(far, far, -1);
+    scene.meshes.push_back(std::move(wall));
+    scene.instances.push_back({1, glm::mat4(1.0f), "wall"});
+  }
+  scene.materials.resize(2);
+  scene.materials[1].base_color = glm::vec4(0, 0, 0, 1);
+  scene.materials[1].metallic = 0.0f;
   Material& material = scene.materials[0];
   material.metallic = 0.0f;
   material.base_color = w.emissive ? glm::vec4(0, 0, 0, 1) : glm::vec4(0.8f, 0.7f, 0.6f, 1.0f);
@@ -148,6 +164,19 @@ TEST(Wire, WideWiresAreAsPlainRenderingHasThem) {
       if (base == "deferred_simple_complex") continue;  // lit forward: not through the G-buffer's encodings
       EXPECT_EQ(difference(plain.color, e.color, "image"), "") << base << ", " << options;
     }
+  }
+}
+
+// Fragments of thin wires are discarded where wide ones are drawn; that must leave depth as it was.
+TEST(Wire, ThinWiresBeforeAWallAreWhole) {
+  WireScene wire;
+  wire.wall = true;
+  wire.slope = 0.3f;
+  wire.radius = 0.2f * pixel_height_m(wire.distance);
+  for (const std::string base : {"none", "msaa8x"}) {
+    const Emulation split = run(wire, "wire_aa+" + base), off = run(wire, "wire_aa:z_write=off+" + base);
+    EXPECT_EQ(difference(split.color, off.color, "image"), "") << base;
+    for (int x = 0; x < kWidth; ++x) EXPECT_GT(column(split.color, x), 0.05) << x;
   }
 }
 
