@@ -27,7 +27,9 @@ TEST(Mlaa, BlendsALongStepByTheAreasUnderItsLine) {
   for (int x = 0; x < 64; ++x) {
     // The line goes from the middle of the run on the left to that of the run on the right, 32 pixels.
     const double t = (x + 0.5 - 16.0) / 32.0;
-    const double white = x < 16 ? 1.0 : x >= 48 ? 0.0 : x < 32 ? 1.0 - 0.5 * t : 0.5 * (1.0 - t);
+    double white = x < 16 ? 1.0 : x >= 48 ? 0.0 : 1.0 - t;
+    if (x == 31 || x == 32)
+      white = 0.875 * white + (x == 32 ? 0.125 : 0.0);  // the step itself, a run of one pixel
     EXPECT_NEAR(f.at(x, 13)[0], 255.0 * std::sqrt(white), 1.0) << x;
     EXPECT_EQ(f.at(x, 12), p.at(x, 12));
     EXPECT_EQ(f.at(x, 14), p.at(x, 14));
