@@ -24,7 +24,7 @@ TECHNIQUES = {
 def run(hwsim, jobs, scene, technique, more=()):
     with tempfile.TemporaryDirectory() as folder:
         command = [hwsim, "run", scene, "-t", technique, "-g", "hd5870", "--resolution", "1280x720", "--json",
-                   "--no-image", "--jobs", str(jobs), "--out", os.path.join(folder, "run"), *more]
+                   "--no-image", "--quiet", "--jobs", str(jobs), "--out", os.path.join(folder, "run"), *more]
         done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{' '.join(command)}\n{done.stderr}")
