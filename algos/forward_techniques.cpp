@@ -59,7 +59,7 @@ void build_multicast(FrameGraph& graph, const FrameParts& parts, int samples, bo
                                              Format::rgba8_srgb, Format::d24_unorm_s8, layers);
   target.centroid = centroid;
   add_forward(graph, parts, "", target);
-  add_full_screen(graph, "merge", target.color, add_output(graph), merge_program(),
+  add_full_screen(graph, "merge", {target.color}, add_output(graph), merge_program(),
                   std::make_shared<MergeUniforms>(MergeUniforms{samples}));
 }
 

@@ -147,7 +147,10 @@ std::optional<SceneSummary> remembered_summary(const std::string& path, Log& log
 }  // namespace
 
 SceneView::SceneView(ViewPlan plan, Log& log) : plan_(std::move(plan)) {
-  if (is_image_file(plan_.scene)) return load_image();
+  if (is_image_file(plan_.scene)) {
+    load_image();
+    return;
+  }
   const std::string path = summary_path(plan_.scene);
   if (auto known = remembered_summary(path, log)) {
     summary_ = std::move(*known);

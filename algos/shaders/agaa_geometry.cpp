@@ -115,7 +115,8 @@ struct GenerateShader {
     const int bits = u.aggregate.code_bits;
     auto mixed = I(0) != I(0);
     for (int i = 0; i < u.raster_samples; ++i) {
-      const I codes = to_int(lanes::load_texel(image, s.pixel_x(), s.pixel_y(), I(s.layer() + i / 8)).x);
+      const I codes =
+          to_int(lanes::load_texel(image, image.format, s.pixel_x(), s.pixel_y(), I(s.layer() + i / 8)).x);
       const I code = shift_right_by(codes, I(i % 8 * bits)) & I((1 << bits) - 1);
       mixed = mixed | (((shift_right_by(mask, I(i)) & I(1)) != I(0)) & (code != aggregate));
     }
