@@ -78,11 +78,11 @@ Table sensitivity_table(const std::vector<Sensitivity>& all, double frame_ns, bo
 }
 
 /// What one sentence can say: where the time goes, and what would help.
-std::string verdict(const PointResult& point, const std::vector<Sensitivity>& sensitivities,
+std::string verdict(double frame_ns, const std::vector<Sensitivity>& sensitivities,
                     const std::vector<UnitHeadroom>& units) {
-  if (point.timing.passes.empty() || units.empty()) return "";
+  if (units.empty()) return "";
   const UnitHeadroom& best = units.front();
-  const double gain = -relative_change(point.timing.time_ns, best.time_ns).value_or(0.0);
+  const double gain = -relative_change(frame_ns, best.time_ns).value_or(0.0);
   std::string text =
       fmt::format("{} holds the frame back most: without its work it would be {:.1f} % shorter",
                   unit_name(best.unit), kPercent * gain);
@@ -124,15 +124,18 @@ struct Explanation {
 Explanation explain_point(const PointResult& point, const RunPlan& plan, const std::string& scene,
                           bool every) {
   const WorkTrace& trace = point.emulation->trace;
-  std::vector<Sensitivity> all = sensitivities(trace, *point.gpu, plan.engine);
+  // The events of `detailed` have no derivatives: what its parameters do is said by `queue`.
+  const Engine engine = plan.engine == Engine::detailed ? Engine::queue : plan.engine;
+  std::vector<Sensitivity> all = sensitivities(trace, *point.gpu, engine);
   std::stable_sort(all.begin(), all.end(), [](const Sensitivity& a, const Sensitivity& b) {
     return std::abs(a.elasticity) > std::abs(b.elasticity);
   });
-  const std::vector<UnitHeadroom> units = headroom(trace, *point.gpu, plan.engine);
-  const double frame_ns = point.timing.time_ns;
+  const std::vector<UnitHeadroom> units = headroom(trace, *point.gpu, engine);
+  const double frame_ns =
+      engine == plan.engine ? point.timing.time_ns : time_frame(trace, *point.gpu, engine).time_ns;
   Explanation result;
   result.sensitivities = sensitivity_table(all, frame_ns, every);
-  result.text = headline(point, plan, scene) + verdict(point, all, units) + "\n" +
+  result.text = headline(point, plan, scene) + verdict(frame_ns, all, units) + "\n" +
                 to_text(pass_table_of(point)) + "\n" + to_text(headroom_table(units, frame_ns)) + "\n";
   result.json = explanation_json(point, plan, scene, all, units);
   return result;

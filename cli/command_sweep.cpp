@@ -76,8 +76,9 @@ SceneView& Sweep::scene_of(const ViewPlan& view) {
 }
 
 std::string point_id(const PlannedPoint& planned) {
-  const std::string text = fmt::format("model {}|{}|{}|{}", kModelVersion, planned.work,
-                                       content_hash(*planned.gpu), engine_name(planned.plan->engine));
+  const std::string text =
+      fmt::format("model {}|{}|{}|{} {}", kModelVersion, planned.work, content_hash(*planned.gpu),
+                  engine_name(planned.plan->engine), planned.plan->timing.detailed_sample_ratio);
   ContentHash hash;
   hash.add({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   return hash.hex().substr(0, 16);

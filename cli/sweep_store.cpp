@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "cli/messages.h"
 
@@ -174,65 +174,100 @@ std::size_t SweepStore::count(const std::string& state) {
   return static_cast<std::size_t>(select.integer(0));
 }
 
-Table SweepStore::points() {
-  std::vector<std::string> varied;  // over all points, in order of appearance
-  std::set<std::string> known;
-  Database::Statement select(
-      database_,
-      "SELECT number, id, scene, technique, gpu, width_px, height_px, settings, state, time_ms, lo_ms, "
-      "hi_ms, support, limiter, dram_mb, memory_mib, shaded_samples, message FROM point ORDER BY number, id");
-  std::vector<nlohmann::ordered_json> settings;
-  std::vector<std::vector<Cell>> rows;
-  const auto real = [&](int column, int decimals) -> Cell {
-    const auto value = select.real(column);
-    return value ? Cell{Real{*value, decimals}} : Cell{NotApplicable{}};
+namespace {
+
+std::vector<Column> point_columns() {
+  return {{"number", "#", true},
+          {"point_id", "point"},
+          {"scene", "scene"},
+          {"technique", "technique"},
+          {"gpu", "GPU"},
+          {"width_px", "width", true},
+          {"height_px", "height", true},
+          {"state", "state"},
+          {"time_ms", "ms", true},
+          {"lo_ms", "lo", true},
+          {"hi_ms", "hi", true},
+          {"support", "support"},
+          {"limiter", "limiter"},
+          {"dram_mb", "DRAM MB", true},
+          {"memory_mib", "memory MiB", true},
+          {"shaded_samples", "shaded samples", true},
+          {"message", "message"}};
+}
+
+constexpr const char* kSelectPoints =
+    "SELECT number, id, scene, technique, gpu, width_px, height_px, state, time_ms, lo_ms, hi_ms, support, "
+    "limiter, dram_mb, memory_mib, shaded_samples, message, settings FROM point ORDER BY number, id";
+constexpr int kSettings = 17;                 ///< column of the statement above
+constexpr std::ptrdiff_t kSettingsPlace = 7;  ///< where they stand in the table
+
+std::vector<Cell> point_row(const Database::Statement& point) {
+  std::vector<Cell> row;
+  const auto count = [&](int column) {
+    if (point.real(column))
+      row.emplace_back(static_cast<std::uint64_t>(point.integer(column)));
+    else
+      row.emplace_back(NotApplicable{});
   };
-  const auto text = [&](int column) -> Cell {
-    const std::string value = select.text(column);
-    return value.empty() ? Cell{NotApplicable{}} : Cell{value};
+  const auto text = [&](int column) {
+    const std::string value = point.text(column);
+    if (value.empty())
+      row.emplace_back(NotApplicable{});
+    else
+      row.emplace_back(value);
   };
-  while (select.step()) {
-    settings.push_back(nlohmann::ordered_json::parse(select.text(7), nullptr, false));
-    if (settings.back().is_discarded())
-      hwsim::cli::fail("U021", "`" + path_ + "` is damaged: the settings of a point are not JSON");
-    for (const auto& [path, value] : settings.back().items())
-      if (known.insert(path).second) varied.push_back(path);
-    const Cell shaded =
-        select.real(16) ? Cell{static_cast<std::uint64_t>(select.integer(16))} : Cell{NotApplicable{}};
-    rows.push_back({static_cast<std::uint64_t>(select.integer(0)), select.text(1), select.text(2),
-                    select.text(3), select.text(4), static_cast<std::uint64_t>(select.integer(5)),
-                    static_cast<std::uint64_t>(select.integer(6)), select.text(8), real(9, 4), real(10, 4),
-                    real(11, 4), text(12), text(13), real(14, 2), real(15, 1), shaded, text(17)});
-  }
-  constexpr std::ptrdiff_t kSettingsColumn = 7;
-  Table table{{{"number", "#", true},
-               {"point_id", "point"},
-               {"scene", "scene"},
-               {"technique", "technique"},
-               {"gpu", "GPU"},
-               {"width_px", "width", true},
-               {"height_px", "height", true},
-               {"state", "state"},
-               {"time_ms", "ms", true},
-               {"lo_ms", "lo", true},
-               {"hi_ms", "hi", true},
-               {"support", "support"},
-               {"limiter", "limiter"},
-               {"dram_mb", "DRAM MB", true},
-               {"memory_mib", "memory MiB", true},
-               {"shaded_samples", "shaded samples", true},
-               {"message", "message"}},
-              std::move(rows)};
+  const auto real = [&](int column, int decimals) {
+    if (const auto value = point.real(column))
+      row.emplace_back(Real{*value, decimals});
+    else
+      row.emplace_back(NotApplicable{});
+  };
+  count(0);
+  for (const int column : {1, 2, 3, 4}) text(column);
+  for (const int column : {5, 6}) count(column);
+  text(7);
+  for (const int column : {8, 9, 10}) real(column, 4);
+  for (const int column : {11, 12}) text(column);
+  real(13, 2);
+  real(14, 1);
+  count(15);
+  text(16);
+  return row;
+}
+
+/// A column for everything that is varied at some point, in order of appearance.
+void insert_settings(Table& table, const std::vector<nlohmann::ordered_json>& settings) {
+  std::vector<std::string> varied;
+  for (const nlohmann::ordered_json& point : settings)
+    for (const auto& [path, value] : point.items())
+      if (std::find(varied.begin(), varied.end(), path) == varied.end()) varied.push_back(path);
   for (size_t k = 0; k < varied.size(); ++k) {
-    const auto at = kSettingsColumn + static_cast<std::ptrdiff_t>(k);
+    const std::ptrdiff_t at = kSettingsPlace + static_cast<std::ptrdiff_t>(k);
     table.columns.insert(table.columns.begin() + at, {varied[k], varied[k], true});
     for (size_t i = 0; i < table.rows.size(); ++i) {
       const auto found = settings[i].find(varied[k]);
-      table.rows[i].insert(table.rows[i].begin() + at, found == settings[i].end()
-                                                           ? Cell{NotApplicable{}}
-                                                           : Cell{found->get<std::string>()});
+      if (found == settings[i].end())
+        table.rows[i].emplace(table.rows[i].begin() + at, NotApplicable{});
+      else
+        table.rows[i].emplace(table.rows[i].begin() + at, found->get<std::string>());
     }
   }
+}
+
+}  // namespace
+
+Table SweepStore::points() {
+  Table table{point_columns(), {}};
+  std::vector<nlohmann::ordered_json> settings;
+  Database::Statement select(database_, kSelectPoints);
+  while (select.step()) {
+    table.rows.push_back(point_row(select));
+    settings.push_back(nlohmann::ordered_json::parse(select.text(kSettings), nullptr, false));
+    if (!settings.back().is_object())
+      hwsim::cli::fail("U021", "`" + path_ + "` is damaged: the settings of a point are no object");
+  }
+  insert_settings(table, settings);
   return table;
 }
 
