@@ -175,7 +175,7 @@ std::string run_file_text(const RunPlan& plan, const algos::TechniqueChoice& tec
       "emulator_skip = {}\nreference_samples = {}\n",
       kSchema, quoted(is_path ? fs::absolute(view.scene).lexically_normal().string() : view.scene),
       quoted(algos::technique_text(technique, true)), quoted(gpu_file),
-      quoted(std::string(engine_name(plan.engine))), plan.timing.detailed_sample_ratio,
+      quoted(std::string(engine_name(plan.engine))), to_toml(TomlValue(plan.timing.detailed_sample_ratio)),
       view.resolution.width_px, view.resolution.height_px, quoted(view.camera), view.point_lights,
       quoted(std::string(light_profile_name(view.lights))), view.shadows, view.shadow_map_px,
       quoted(skip_text(plan.skip)), plan.reference_samples);

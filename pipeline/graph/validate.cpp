@@ -53,7 +53,7 @@ class Validator {
     else if (s > features_.native_msaa_max)
       fail("G006",
            "image " + text(image) + " needs " + std::to_string(s) + " samples, this GPU has " +
-               std::to_string(features_.native_msaa_max),
+               std::to_string(features_.native_msaa_max) + " (gpu.features.native_msaa_max)",
            "gpu.features.native_msaa_max = " + std::to_string(s) + " makes it native");
   }
 
@@ -112,7 +112,7 @@ class Validator {
     else if (s > features_.native_msaa_max && pass.depth == ImageId{} && pass.color.empty())
       fail("G006",
            "pass `" + pass.name + "` rasterizes " + std::to_string(s) + " samples, this GPU has " +
-               std::to_string(features_.native_msaa_max),
+               std::to_string(features_.native_msaa_max) + " (gpu.features.native_msaa_max)",
            "gpu.features.native_msaa_max = " + std::to_string(s) + " makes them native");
   }
 

@@ -106,7 +106,7 @@ void check_heat(const FrameGraph& graph, const pipeline::CompiledGraph& compiled
 
 TEST_P(Conservation, HoldsInEveryPassOnEveryGeneratedScene) {
   for (const pipeline::GeneratorInfo& generator : pipeline::generators()) {
-    const FrameSetup setup{GetParam(), generator.name, 320, 180};
+    const FrameSetup setup{GetParam(), generator.name, 160, 90};
     SCOPED_TRACE(generator.name);
     const FrameGraph graph = build_graph(setup);
     const pipeline::CompiledGraph compiled = pipeline::compile(graph, test_features(), FunctionalConfig{});

@@ -27,7 +27,7 @@ class Determinism : public ::testing::TestWithParam<std::string> {
  protected:
   static std::vector<FrameSetup> setups() {
     const bool large = GetParam().starts_with("ssaa16x") || GetParam().starts_with("ssaa64x");
-    const int width = large ? 80 : 320, height = large ? 45 : 180;
+    const int width = large ? 80 : 160, height = large ? 45 : 90;
     return {{GetParam(), "sponza_hall", width, height}, {GetParam(), "grass:blades=4000", width, height}};
   }
 };

@@ -60,7 +60,7 @@ TEST_F(CacheTest, WhateverChangesTheWorkIsEmulatedAnew) {
   EXPECT_FALSE(cached("--no-image --lights 1"));
   EXPECT_FALSE(cached("--no-image --no-shadows"));
   EXPECT_FALSE(cached("--no-image --set technique.centroid=off"));
-  EXPECT_FALSE(cached("--no-image --set gpu.features.conservative_raster=true"));
+  EXPECT_FALSE(cached("--no-image --set gpu.features.conservative_raster=false"));
   EXPECT_FALSE(cached("--no-image --set gpu.functional.post_transform_cache_entries=3"));
   EXPECT_FALSE(cached("--no-image --set emulator.skip=none"));
   EXPECT_FALSE(cached("")) << "an image was asked for, and none is kept";

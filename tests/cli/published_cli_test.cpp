@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
+#include "support/places.h"
 
 namespace hwsim::cli::test {
 namespace {
@@ -49,7 +50,7 @@ TEST(Published, ReproduceWritesTheColumnsOfTheContractAndPictures) {
 
 TEST(Published, MappingMistakesAreReportedWithTheirLine) {
   const Workplace place;
-  std::filesystem::copy(std::string(HWSIM_SOURCE_DIR) + "/configs", place / "configs",
+  std::filesystem::copy(hwsim::test::source_dir() + "/configs", place / "configs",
                         std::filesystem::copy_options::recursive);
   const std::string uses = place.read("configs/published/mapping/uses.csv");
   place.write("configs/published/mapping/uses.csv", uses + "SSS,no_such_table,*,*,*,*,*,*,*,fitted,\n");
