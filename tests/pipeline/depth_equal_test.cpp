@@ -31,7 +31,7 @@ glm::mat4 camera_matrix(const Scene& scene, float aspect) {
 
 /// How many triangles pass `compare` at each sample after the pre-pass, without writing.
 Counts count(const Setup& setup, Compare compare) {
-  constexpr int kWidth = 320, kHeight = 180;
+  constexpr int kWidth = 160, kHeight = 90;
   test::SampleFrame frame(setup.scene, kWidth, kHeight, setup.samples, Format::r32_float, setup.format);
   const glm::mat4 clip = camera_matrix(*setup.scene, static_cast<float>(kWidth) / kHeight);
   DrawBatch before = frame.all_draws(mesh_position_program(), nullptr, clip);
