@@ -88,20 +88,21 @@ class ComputeLanes : public LaneFlow {
     });
   }
 
-  /// Word `index` of the pass's storage buffer, lanes of `mask` only (others 0).
+  /// Word `index` of the pass's storage buffer, lanes of `mask` in the current branch only (others 0): what a
+  /// register has beside them touches nothing, so that counts do not depend on its width.
   I load_buffer(int slot, I index, M mask) {
-    group_.counters->mem.storage_read_bytes += word_bytes(mask & valid_);
-    return BufferAccess(*group_.resources, slot, first_).load_words(index, mask & valid_);
+    group_.counters->mem.storage_read_bytes += word_bytes(mask & live_);
+    return BufferAccess(*group_.resources, slot, first_).load_words(index, mask & live_);
   }
   void store_buffer(int slot, I index, I value, M mask) {
-    group_.counters->mem.storage_write_bytes += word_bytes(mask & valid_);
-    BufferAccess(*group_.resources, slot, first_).store_words(index, value, mask & valid_);
+    group_.counters->mem.storage_write_bytes += word_bytes(mask & live_);
+    BufferAccess(*group_.resources, slot, first_).store_words(index, value, mask & live_);
   }
   /// Atomic integer add; the words before it.
   I atomic_add(int slot, I index, I value, M mask) {
-    group_.counters->mem.storage_read_bytes += word_bytes(mask & valid_);
-    group_.counters->mem.storage_write_bytes += word_bytes(mask & valid_);
-    return BufferAccess(*group_.resources, slot, first_).add_words(index, value, mask & valid_);
+    group_.counters->mem.storage_read_bytes += word_bytes(mask & live_);
+    group_.counters->mem.storage_write_bytes += word_bytes(mask & live_);
+    return BufferAccess(*group_.resources, slot, first_).add_words(index, value, mask & live_);
   }
 
   /// Writes texel (x, y) of the pass's target, lanes of `mask` only; coordinates are inside the image.

@@ -173,26 +173,27 @@ class FragmentLanes : public LaneFlow {
     track_texels(*batch_.resources, slot, x, y, sample, mask_bits(live_), first_);
     for (int c = 0; c < kChannels; ++c) channels[c] = load_texel_int(image, c, x, y, sample);
   }
-  /// Word `index` of the pass's storage buffer, lanes of `mask` only (others 0).
+  /// Word `index` of the pass's storage buffer, lanes of `mask` in the current branch only (others 0): what a
+  /// register has beside them touches nothing, so that counts do not depend on its width.
   I load_buffer(int slot, I index, M mask) {
-    batch_.storage_read_bytes += word_bytes(mask & valid_);
-    return BufferAccess(*batch_.resources, slot, first_).load_words(index, mask & valid_);
+    batch_.storage_read_bytes += word_bytes(mask & live_);
+    return BufferAccess(*batch_.resources, slot, first_).load_words(index, mask & live_);
   }
   void store_buffer(int slot, I index, I value, M mask) {
-    batch_.storage_write_bytes += word_bytes(mask & active_);
-    BufferAccess(*batch_.resources, slot, first_).store_words(index, value, mask & active_);
+    batch_.storage_write_bytes += word_bytes(mask & active_ & live_);
+    BufferAccess(*batch_.resources, slot, first_).store_words(index, value, mask & active_ & live_);
   }
   /// Atomic integer add; the words before it.
   I atomic_add(int slot, I index, I value, M mask) {
-    batch_.storage_read_bytes += word_bytes(mask & active_);
-    batch_.storage_write_bytes += word_bytes(mask & active_);
-    return BufferAccess(*batch_.resources, slot, first_).add_words(index, value, mask & active_);
+    batch_.storage_read_bytes += word_bytes(mask & active_ & live_);
+    batch_.storage_write_bytes += word_bytes(mask & active_ & live_);
+    return BufferAccess(*batch_.resources, slot, first_).add_words(index, value, mask & active_ & live_);
   }
   /// Atomic exchange; the words before it. A pass whose programs use it runs its bins one after another.
   I atomic_exchange(int slot, I index, I value, M mask) {
-    batch_.storage_read_bytes += word_bytes(mask & active_);
-    batch_.storage_write_bytes += word_bytes(mask & active_);
-    return BufferAccess(*batch_.resources, slot, first_).exchange_words(index, value, mask & active_);
+    batch_.storage_read_bytes += word_bytes(mask & active_ & live_);
+    batch_.storage_write_bytes += word_bytes(mask & active_ & live_);
+    return BufferAccess(*batch_.resources, slot, first_).exchange_words(index, value, mask & active_ & live_);
   }
   /// Adds the lanes of `mask` to a counter: no operation of the program.
   void count(std::uint64_t TechniqueCounters::*counter, M mask) {
@@ -201,7 +202,7 @@ class FragmentLanes : public LaneFlow {
   }
   /// Lanes of `mask` whose word of a buffer is not 0, for counters alone.
   M buffer_nonzero(int slot, I index, M mask) const {
-    return BufferAccess(*batch_.resources, slot, first_).holds_nonzero(index, mask & active_);
+    return BufferAccess(*batch_.resources, slot, first_).holds_nonzero(index, mask & active_ & live_);
   }
 
   /// To the pass's target, which holds it when the pass has ended; coordinates are inside the image.

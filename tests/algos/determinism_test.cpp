@@ -83,9 +83,6 @@ TEST_P(Determinism, ThreadsChangeNothing) {
 TEST_P(Determinism, VectorTargetsChangeNothing) {
   const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
   if (targets.size() < 2) GTEST_SKIP() << "built for one vector target: configure with HWSIM_SIMD=all";
-  // Known fault: the sampled reuse distances of this variant's shading pass depend on the vector width.
-  if (GetParam().find("accumulate=atomics") != std::string::npos)
-    GTEST_SKIP() << "reuse distances of looped loads follow the vector width";
   for (const FrameSetup& setup : setups()) {
     const Emulation first = run_frame(setup, {});
     for (const std::int64_t target : targets) {
