@@ -9,9 +9,9 @@
 #include <system_error>
 #include <utility>
 
+#include "hwsim/base/content_hash.h"
 #include "pipeline/base/file_io.h"
 #include "pipeline/scene/generate/registry.h"
-#include "hwsim/base/content_hash.h"
 #include "pipeline/scene/gltf_loader.h"
 
 namespace hwsim::pipeline {
