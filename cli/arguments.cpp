@@ -1,4 +1,5 @@
-// CLI11 costs six seconds of compile time: it is named in this file only.
+// CLI11 costs six seconds of compile time: it is named in this file, argument_groups and argument_errors
+// only.
 #include "cli/arguments.h"
 
 #include <CLI/CLI.hpp>
@@ -6,149 +7,14 @@
 #include <map>
 #include <memory>
 #include <sstream>
-#include <thread>
 
-#include "cli/argument_values.h"
+#include "cli/argument_errors.h"
+#include "cli/argument_groups.h"
 #include "cli/help_texts.h"
 #include "cli/messages.h"
 
 namespace hwsim::cli {
 namespace {
-
-/// A flag whose value is one of a few words.
-template <class T>
-void add_choice(CLI::App& app, const std::string& flag, std::string description,
-                std::map<std::string, T> choices, std::function<void(T)> set,
-                const std::string& environment = {}) {
-  std::vector<std::string> words;
-  for (const auto& [word, value] : choices) words.push_back(word);
-  CLI::Option* option = app.add_option_function<std::string>(
-      flag,
-      [=](const std::string& text) {
-        if (const auto found = choices.find(text); found != choices.end()) return set(found->second);
-        fail_usage("U003", flag + " is `" + text + "`, must be " + CLI::detail::join(words, ", "),
-                   did_you_mean(text, words));
-      },
-      std::move(description));
-  option->type_name(CLI::detail::join(words, "|"));
-  if (!environment.empty()) option->envname(environment);
-}
-
-/// A flag that may be given several times, with one value each time.
-CLI::Option* add_repeatable(CLI::App& app, const std::string& flag, std::vector<std::string>& target,
-                            std::string description, const std::string& type) {
-  return app.add_option(flag, target, std::move(description))->allow_extra_args(false)->type_name(type);
-}
-
-void add_common(CLI::App& app, CommonOptions& common) {
-  CLI::App* group = app.add_option_group("Output and progress");
-  group
-      ->add_option_function<std::vector<std::string>>(
-          "--format",
-          [&common](const std::vector<std::string>& texts) {
-            for (const std::string& text : texts) common.formats.push_back(parse_format(text));
-          },
-          "Shape of the answer; FORMAT=FILE writes it to a file (repeatable)")
-      ->allow_extra_args(false)
-      ->type_name("table|csv|json|md");
-  group->add_flag_callback(
-      "--json",
-      [&common] {
-        common.formats.push_back({Format::json, ""});
-      },
-      "--format json");
-  group->add_flag_callback(
-      "-q,--quiet", [&common] { common.verbosity = -1; }, "Only the answer and errors");
-  group->add_flag_callback(
-      "-v,--verbose", [&common] { common.verbosity = 1; }, "Say more on standard error");
-  const std::map<std::string, When> when = {
-      {"auto", When::automatic}, {"always", When::always}, {"never", When::never}};
-  add_choice<When>(
-      *group, "--color", "Colored messages; NO_COLOR and TERM=dumb are obeyed", when,
-      [&common](When value) { common.color = value; }, "HWSIM_COLOR");
-  add_choice<When>(
-      *group, "--progress", "Progress bar; auto: only on a terminal", when,
-      [&common](When value) { common.progress = value; }, "HWSIM_PROGRESS");
-  common.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  group->add_option("--jobs", common.jobs, "Threads; the results do not depend on it")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("N")
-      ->envname("HWSIM_JOBS");
-}
-
-void add_sets(CLI::App& app, std::vector<std::string>& sets) {
-  add_repeatable(app, "--set", sets,
-                 "gpu., scene., technique., emulator. or timing. setting (repeatable, last wins)",
-                 "PATH=VALUE");
-}
-
-void add_overlays(CLI::App& app, std::vector<std::string>& overlays) {
-  add_repeatable(app, "--overlay", overlays,
-                 "A what-if of `hwsim list overlays`, or a .toml file, laid over the GPU (repeatable)",
-                 "NAME|FILE");
-}
-
-void add_out(CLI::App& app, OutOptions& out) {
-  app.add_option("--out", out.directory, "Folder for the results; default runs/<date>-<time>-<id>")
-      ->type_name("DIR");
-  app.add_flag("--force", out.force, "Replace the results in --out");
-}
-
-void add_view_flags(CLI::App& app, ViewOptions& view) {
-  app.add_option_function<std::string>(
-         "--resolution", [&view](const std::string& text) { view.resolution = parse_resolution(text); },
-         "Pixels, 1 to 16384 each way; default 1280x720")
-      ->type_name("WxH");
-  app.add_option("--camera", view.camera, "A camera of the scene; default the first")
-      ->type_name("NAME|INDEX");
-  app.add_option("--lights", view.point_lights, "Point lights added to those of the scene")
-      ->check(CLI::Range(0, 1024))
-      ->type_name("N");
-  app.add_flag("--no-shadows", view.no_shadows, "No shadow map");
-  add_sets(app, view.sets);
-}
-
-void add_view(CLI::App& app, ViewOptions& view, bool required) {
-  app.add_option("SCENE", view.scene, "A .gltf or .glb file, or a generator: name:key=value,key=value")
-      ->required(required)
-      ->type_name(" ");
-  add_view_flags(app, view);
-}
-
-/// Which techniques on which GPUs.
-void add_points(CLI::App& app, RunOptions& run) {
-  app.add_option_function<std::vector<std::string>>(
-         "-t,--technique",
-         [&run](const std::vector<std::string>& texts) {
-           for (const std::string& text : texts)
-             for (std::string& technique : split_techniques(text))
-               run.techniques.push_back(std::move(technique));
-         },
-         "Techniques, separated by commas (repeatable); default none")
-      ->allow_extra_args(false)
-      ->type_name("NAME[:key=value]");
-  add_repeatable(app, "-g,--gpu", run.gpus, "A GPU of `hwsim list gpus`, or a .toml file (repeatable)",
-                 "NAME|FILE")
-      ->envname("HWSIM_GPU");
-  add_overlays(app, run.overlays);
-  app.add_option("--engine", run.engine, "Timing engine; default queue")
-      ->type_name("roofline|queue|detailed");
-  app.add_flag("--no-cache", run.no_cache, "Emulate anew, and keep no traces");
-}
-
-void add_reference_samples(CLI::App& app, RunOptions& run) {
-  app.add_option("--reference", run.reference_samples,
-                 "Compare with the ray-traced reference of so many samples a pixel; default 64")
-      ->check(CLI::Range(1, 65536))
-      ->type_name("[SAMPLES]");
-  app.add_flag("--no-image", run.no_image, "Write no images");
-}
-
-void add_vary(CLI::App& app, std::vector<std::string>& vary, bool& zip) {
-  add_repeatable(app, "--vary", vary, "Values of a setting: a,b,c or lo..hi:n or lo..hi:n:log (repeatable)",
-                 "PATH=VALUES");
-  app.add_flag("--zip", zip, "Vary all together instead of every combination");
-}
 
 /// The sentence of a help text that says what the command does; it follows the examples.
 std::string summary_of(const std::string& help) {
@@ -427,82 +293,6 @@ Command Parser::command() const {
   return results_.at(chosen)();
 }
 
-/// The subcommand that the words before the first flag lead to, for messages and for `help`.
-const CLI::App& selected(const CLI::App& app, const std::vector<std::string>& words) {
-  const CLI::App* chosen = &app;
-  for (const std::string& word : words) {
-    const CLI::App* next = nullptr;
-    for (const CLI::App* sub : chosen->get_subcommands([](const CLI::App*) { return true; }))
-      if (sub->get_name() == word) next = sub;
-    if (!next) break;
-    chosen = next;
-  }
-  return *chosen;
-}
-
-std::vector<std::string> subcommand_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
-    if (!sub->get_name().empty())
-      names.push_back(sub->get_name());  // option groups are subcommands without a name
-  return names;
-}
-
-/// A command that is not there, before CLI11 reports it as some missing flag.
-void check_command_names(const CLI::App& app, const std::vector<std::string>& words) {
-  const CLI::App& chosen = selected(app, words);
-  const std::vector<std::string> names = subcommand_names(chosen);
-  if (names.empty()) return;
-  const size_t depth = &chosen == &app ? 0 : 1;
-  const std::string lead = depth == 0 ? "" : chosen.get_name() + " ";
-  if (words.size() == depth)
-    fail_usage("U002", "no command given after `hwsim" + (depth == 0 ? "" : " " + chosen.get_name()) + "`",
-               "one of " + CLI::detail::join(names, ", "));
-  if (words[depth].starts_with("-")) return;
-  fail_usage("U001", "unknown command `" + lead + words[depth] + "`", did_you_mean(words[depth], names));
-}
-
-std::vector<FlagInfo> flags_of(const CLI::App& app) {
-  std::vector<FlagInfo> flags;
-  for (const CLI::Option* option :
-       app.get_options([](const CLI::Option* o) { return !o->get_positional(); })) {
-    FlagInfo flag;
-    for (const std::string& name : option->get_snames()) flag.names.push_back("-" + name);
-    for (const std::string& name : option->get_lnames()) flag.names.push_back("--" + name);
-    flag.description = option->get_description();
-    flag.takes_value = option->get_items_expected_max() > 0;
-    flags.push_back(std::move(flag));
-  }
-  for (const CLI::App* group :
-       app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); }))
-    for (FlagInfo& flag : flags_of(*group)) flags.push_back(std::move(flag));
-  return flags;
-}
-
-[[noreturn]] void fail_unknown_argument(const CLI::App& chosen, const std::string& argument) {
-  std::vector<std::string> names;
-  for (const FlagInfo& flag : flags_of(chosen))
-    names.insert(names.end(), flag.names.begin(), flag.names.end());
-  const std::string name = argument.substr(0, argument.find('='));
-  const std::string kind = argument.starts_with("-") ? "unknown flag `" : "unexpected argument `";
-  fail_usage("U001", kind + name + "`", did_you_mean(name, names),
-             "`hwsim " + chosen.get_name() + " --help` lists the flags");
-}
-
-[[noreturn]] void translate(const CLI::ParseError& error, const CLI::App& app,
-                            const std::vector<std::string>& words) {
-  const CLI::App& chosen = selected(app, words);
-  const std::string help = "`hwsim " + chosen.get_name() + " --help` lists the flags";
-  std::string message = error.what();
-  if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
-    const auto rest = app.remaining(true);
-    if (!rest.empty()) fail_unknown_argument(chosen, rest.front());
-  }
-  if (dynamic_cast<const CLI::RequiredError*>(&error)) fail_usage("U002", message, "", help);
-  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) fail_usage("U004", message, "", help);
-  fail_usage("U003", message, "", help);
-}
-
 /// `--reference` stands alone or before a number; CLI11 would take the scene for the number.
 std::vector<std::string> with_explicit_values(int argc, const char* const* argv) {
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
@@ -530,7 +320,7 @@ Command parse_arguments(int argc, const char* const* argv) {
   } catch (const CLI::CallForVersion& version) {
     return PrintText{std::string(version.what()) + "\n"};
   } catch (const CLI::ParseError& error) {
-    translate(error, parser->app, words);
+    fail_parse(error, parser->app, words);
   }
   return parser->command();
 }

@@ -11,14 +11,14 @@
 #include "pipeline/emulate/depth_traffic.h"
 #include "pipeline/emulate/geometry.h"
 #include "pipeline/emulate/material_views.h"
+#include "pipeline/emulate/pass_description.h"
+#include "pipeline/emulate/pass_reuse.h"
 #include "pipeline/emulate/transfer.h"
-#include "pipeline/graph/commands.h"
 
 namespace hwsim::pipeline {
 namespace {
 
 constexpr std::uint64_t kFullScreenBands = 64;
-constexpr int kReuseShiftMax = 5;  // 1 block in 32: the sampling error is in docs/hardware_model.md
 
 /// Runs the passes of one compiled graph in order. Images live from their first pass to their last.
 class FrameRunner {
@@ -47,7 +47,7 @@ class FrameRunner {
         options_.progress(static_cast<double>(position) / static_cast<double>(compiled_.order.size()),
                           pass.name);
       allocate(static_cast<int>(position));
-      PassWork work = describe(pass, compiled_.barrier_before[position] != 0);
+      PassWork work = describe(graph_, pass, compiled_.barrier_before[position] != 0, cleared_);
       const auto start = std::chrono::steady_clock::now();
       const std::clock_t cpu_start = std::clock();
       run_pass(pass, work);
@@ -102,40 +102,6 @@ class FrameRunner {
         images_[i].reset();
     for (std::size_t i = 0; i < buffers_.size(); ++i)
       if (compiled_.buffers[i].last_pass == position) std::vector<std::uint32_t>().swap(buffers_[i]);
-  }
-
-  PassWork describe(const Pass& pass, bool barrier) {
-    PassWork work;
-    work.name = pass.name;
-    work.kind = pass.kind;
-    work.width_px = pass.width;
-    work.height_px = pass.height;
-    work.raster_samples = pass.samples;
-    work.barrier_before = barrier;
-    if (pass.depth) {
-      work.depth_format = graph_.image(pass.depth).format;
-      work.depth_samples = graph_.image(pass.depth).samples;
-      work.depth_cleared_before = cleared_[static_cast<std::size_t>(pass.depth.index)] != 0;
-    }
-    work.color_cleared_before = !pass.color.empty();
-    const std::vector<ImageId>& written = pass.color.empty() ? pass.targets : pass.color;
-    for (std::size_t i = 0; i < written.size(); ++i) {
-      const ImageDesc& desc = graph_.image(written[i]);
-      bool blended = i < pass.state.blend.size() && pass.state.blend[i].enabled;
-      for (const DrawBatch& batch : pass.batches)
-        blended = blended || (i < batch.state.blend.size() && batch.state.blend[i].enabled);
-      const bool every_layer = pass.kind != PassKind::draw && pass.kind != PassKind::full_screen;
-      work.color_targets.push_back({desc.format, desc.samples * (every_layer ? desc.layers : 1), blended});
-      work.color_cleared_before =
-          work.color_cleared_before && cleared_[static_cast<std::size_t>(written[i].index)] != 0;
-    }
-    work.sample_rate = pass.state.raster.sample_rate;
-    for (const DrawBatch& batch : pass.batches) {
-      work.sample_rate = work.sample_rate || batch.state.raster.sample_rate;
-      if (batch.vertex != nullptr)
-        work.attribute_scalars = std::max(work.attribute_scalars, batch.raster_scalars());
-    }
-    return work;
   }
 
   void run_pass(const Pass& pass, PassWork& work) {
@@ -249,8 +215,8 @@ class FrameRunner {
 
   void start_workers(const Pass& pass, std::size_t chunk_count, PassContext& c) {
     c.chunk_count = chunk_count;
-    c.resources.image_first_line = image_lines(pass);
-    const BlockKinds kinds = block_kinds(pass, c);
+    c.resources.image_first_line = image_lines(graph_, pass, textures_.line_count());
+    const BlockKinds kinds = block_kinds(graph_, pass, c, textures_.line_count(), options_.exact_reuse);
     for (BinWorker& worker : workers_) {
       worker.chunks.assign(chunk_count, PassCounters{});
       worker.tracker.start_pass(kinds, !pass.storage.empty());
@@ -259,42 +225,6 @@ class FrameRunner {
     }
     for (GpuImage* target : c.color) std::fill(target->touched_chunk.begin(), target->touched_chunk.end(), 0);
     if (c.depth != nullptr) std::fill(c.depth->touched_chunk.begin(), c.depth->touched_chunk.end(), 0);
-  }
-
-  /// Lines of sampled images are numbered behind those of all textures.
-  std::array<std::uint32_t, kMaxImageSlots> image_lines(const Pass& pass) const {
-    std::array<std::uint32_t, kMaxImageSlots> first{};
-    std::uint64_t next = textures_.line_count();
-    for (std::size_t i = 0; i < pass.sampled.size(); ++i) {
-      first[i] = static_cast<std::uint32_t>(next);
-      next += allocated_bytes(graph_.image(pass.sampled[i])) / kLineBytes + kBlockLanes;
-    }
-    return first;
-  }
-
-  BlockKinds block_kinds(const Pass& pass, const PassContext& c) const {
-    const int shift_max = options_.exact_reuse ? 0 : kReuseShiftMax;
-    BlockKinds kinds;
-    std::uint64_t lines = pass.kind == PassKind::draw ? textures_.line_count() : 0, stored = 0, tiles = 0;
-    for (const ImageId id : pass.sampled) lines += allocated_bytes(graph_.image(id)) / kLineBytes;
-    for (const BufferId id : pass.storage) stored += 4 * graph_.buffer(id).words / kLineBytes;
-    for (const ImageId id : pass.targets) stored += allocated_bytes(graph_.image(id)) / kLineBytes;
-    for (const GpuImage* target : c.color) {
-      tiles += target->touched_chunk.size();
-      const auto bytes =
-          static_cast<std::uint32_t>(kBlockLanes * target->samples * info(target->format).bytes);
-      kinds[at(ReuseStream::color)].bytes = std::max(kinds[at(ReuseStream::color)].bytes, bytes);
-    }
-    kinds[at(ReuseStream::texture)].shift = sample_shift(lines, shift_max);
-    kinds[at(ReuseStream::storage)].shift = sample_shift(stored, shift_max);
-    kinds[at(ReuseStream::geometry)].shift = shift_max;
-    kinds[at(ReuseStream::color)].whole = kinds[at(ReuseStream::depth)].whole = false;
-    kinds[at(ReuseStream::color)].shift = sample_shift(tiles, shift_max);
-    if (c.depth == nullptr) return kinds;
-    kinds[at(ReuseStream::depth)].bytes =
-        static_cast<std::uint32_t>(kBlockLanes * c.depth->samples * c.depth_bytes);
-    kinds[at(ReuseStream::depth)].shift = sample_shift(c.depth->touched_chunk.size(), shift_max);
-    return kinds;
   }
 
   void save_depth(GpuImage& depth) {
@@ -314,51 +244,8 @@ class FrameRunner {
     work.chunks.assign(workers_.front().chunks.size(), PassCounters{});
     for (const BinWorker& worker : workers_)
       for (std::size_t i = 0; i < work.chunks.size(); ++i) work.chunks[i] += worker.chunks[i];
-    work.reuse = merge_reuse(work);
-    if (!pass.storage.empty()) share_same_address(work);
-  }
-
-  // Requests of tiles are those of the sample: their ratio varies less than either. Those of lines are known.
-  ReuseProfile merge_reuse(const PassWork& work) {
-    std::vector<std::vector<BlockAccess>> accesses;
-    std::array<std::uint64_t, kCacheSizes + 1> l1_missing{};
-    for (BinWorker& worker : workers_) {
-      accesses.push_back(std::move(worker.tracker.accesses));
-      for (std::size_t i = 0; i < l1_missing.size(); ++i) l1_missing[i] += worker.tracker.l1_missing[i];
-    }
-    ReuseProfile profile = make_reuse_profile(std::move(accesses), workers_.front().tracker.kinds, l1_missing,
-                                              options_.exact_reuse);
-    const MemCounters mem = total(work).mem;
-    const auto request = [&profile](ReuseStream stream, std::uint64_t read, std::uint64_t write) {
-      for (MissCurve* curve : {&profile.shared[at(stream)], &profile.apart[at(stream)]}) {
-        curve->requested_read_bytes = read;
-        curve->requested_write_bytes = write;
-      }
-    };
-    request(ReuseStream::texture, mem.texture_read_bytes, 0);
-    request(ReuseStream::storage, mem.storage_read_bytes, mem.storage_write_bytes);
-    request(ReuseStream::geometry, mem.vertex_read_bytes + mem.index_read_bytes, 0);
-    profile.texture_l1.requested_read_bytes = mem.texture_read_bytes;
-    return profile;
-  }
-
-  // Chunks share the most frequent address in proportion to their atomics.
-  void share_same_address(PassWork& work) const {
-    std::vector<std::uint64_t> sums(AccessTracker::kAtomicSlots, 0);
-    for (const BinWorker& worker : workers_)
-      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += worker.tracker.atomics[i];
-    const std::uint64_t hottest = *std::max_element(sums.begin(), sums.end());
-    const std::uint64_t all = total(work).shader.atomic_lane_ops;
-    if (all == 0) return;
-    std::uint64_t before = 0;
-    for (PassCounters& n : work.chunks) {
-      const std::uint64_t after = before + n.shader.atomic_lane_ops;
-      n.shader.same_address_atomic_lane_ops = scaled(hottest, after, all) - scaled(hottest, before, all);
-      before = after;
-    }
-  }
-  static std::uint64_t scaled(std::uint64_t value, std::uint64_t part, std::uint64_t whole) {
-    return static_cast<std::uint64_t>(static_cast<__uint128_t>(std::min(value, whole)) * part / whole);
+    work.reuse = merge_reuse(workers_, work, options_.exact_reuse);
+    if (!pass.storage.empty()) share_same_address(workers_, work);
   }
 
   void run_draw(const Pass& pass, PassWork& work) {
@@ -372,7 +259,7 @@ class FrameRunner {
     c.chunk_primitives = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(triangles / 256, 32, 4096));
     start_workers(pass, std::max<std::uint64_t>(1, (triangles + c.chunk_primitives - 1) / c.chunk_primitives),
                   c);
-    count_commands(pass, c, work.barrier_before, workers_.front().chunks);
+    count_commands(graph_, pass, c, work.barrier_before, workers_.front().chunks);
     count_inputs(c, workers_.front().chunks);
     const GeometryOptions geometry{options_.jobs, functional_.post_transform_cache_entries,
                                    options_.skip.frustum};
@@ -404,37 +291,12 @@ class FrameRunner {
     return ordered ? 1 : options_.jobs;
   }
 
-  // A draw's commands count where its triangles do.
-  void count_commands(const Pass& pass, const PassContext& c, bool barrier,
-                      std::vector<PassCounters>& chunks) const {
-    for (const Command& command : record_pass(graph_, pass, barrier)) {
-      const bool of_draw = pass.kind == PassKind::draw && command.draw < c.draws.size();
-      const std::size_t chunk = of_draw ? c.draws[command.draw].first_primitive / c.chunk_primitives : 0;
-      FrontEndCounters& n = chunks[std::min(chunk, chunks.size() - 1)].fe;
-      n.command_words += command_words(command.kind);
-      const bool binds =
-          command.kind == CommandKind::bind_pipeline || command.kind == CommandKind::bind_resources;
-      n.state_changes += binds ? 1 : 0;
-      n.draws +=
-          command.kind >= CommandKind::draw ? 1 : 0;  // draws, dispatches and transfers: they start work
-    }
-  }
-
-  static void count_inputs(const PassContext& c, std::vector<PassCounters>& chunks) {
-    for (const DrawInfo& draw : c.draws) {
-      const std::size_t chunk =
-          std::min<std::size_t>(draw.first_primitive / c.chunk_primitives, chunks.size() - 1);
-      // Transforms and material, as a driver would bind them.
-      chunks[chunk].mem.constant_read_bytes += 64 + 36 + sizeof(MaterialView);
-    }
-  }
-
   void run_full_screen(const Pass& pass, PassWork& work) {
     PassContext c = make_context(pass);
     const auto bins = static_cast<std::uint64_t>(c.bins_x) * static_cast<std::uint64_t>(c.bins_y);
     const std::uint64_t bands = std::min(bins, kFullScreenBands);
     start_workers(pass, bands, c);
-    count_commands(pass, c, work.barrier_before, workers_.front().chunks);
+    count_commands(graph_, pass, c, work.barrier_before, workers_.front().chunks);
     workers_.front().chunks[0].stats.input_assembly_vertices += 3;  // one triangle that covers the screen
     workers_.front().chunks[0].stats.vertex_shader_invocations += 3;
     parallel_for(bins, bin_jobs(pass), [&](std::size_t bin, int worker) {
@@ -463,7 +325,7 @@ class FrameRunner {
     const auto groups = static_cast<std::uint64_t>(pass.groups_x) * static_cast<std::uint64_t>(pass.groups_y);
     const std::uint64_t bands = std::min(groups, kFullScreenBands);
     start_workers(pass, bands, c);
-    count_commands(pass, c, work.barrier_before, workers_.front().chunks);
+    count_commands(graph_, pass, c, work.barrier_before, workers_.front().chunks);
     std::vector<std::vector<std::uint32_t>> memory(
         workers_.size(),
         std::vector<std::uint32_t>(static_cast<std::size_t>(pass.compute->group_memory_bytes) / 4 + 1));
@@ -504,7 +366,7 @@ class FrameRunner {
     }
     if (source != nullptr) work.raster_samples = source->samples;
     work.chunks = count_transfer(pass, source, targets);
-    count_commands(pass, PassContext{}, work.barrier_before, work.chunks);
+    count_commands(graph_, pass, PassContext{}, work.barrier_before, work.chunks);
   }
 
   Image read_output() {

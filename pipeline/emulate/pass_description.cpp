@@ -1,0 +1,66 @@
+#include "pipeline/emulate/pass_description.h"
+
+#include <algorithm>
+
+#include "pipeline/graph/commands.h"
+
+namespace hwsim::pipeline {
+
+PassWork describe(const FrameGraph& graph, const Pass& pass, bool barrier, std::span<const char> cleared) {
+  PassWork work;
+  work.name = pass.name;
+  work.kind = pass.kind;
+  work.width_px = pass.width;
+  work.height_px = pass.height;
+  work.raster_samples = pass.samples;
+  work.barrier_before = barrier;
+  if (pass.depth) {
+    work.depth_format = graph.image(pass.depth).format;
+    work.depth_samples = graph.image(pass.depth).samples;
+    work.depth_cleared_before = cleared[static_cast<std::size_t>(pass.depth.index)] != 0;
+  }
+  work.color_cleared_before = !pass.color.empty();
+  const std::vector<ImageId>& written = pass.color.empty() ? pass.targets : pass.color;
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    const ImageDesc& desc = graph.image(written[i]);
+    bool blended = i < pass.state.blend.size() && pass.state.blend[i].enabled;
+    for (const DrawBatch& batch : pass.batches)
+      blended = blended || (i < batch.state.blend.size() && batch.state.blend[i].enabled);
+    const bool every_layer = pass.kind != PassKind::draw && pass.kind != PassKind::full_screen;
+    work.color_targets.push_back({desc.format, desc.samples * (every_layer ? desc.layers : 1), blended});
+    work.color_cleared_before =
+        work.color_cleared_before && cleared[static_cast<std::size_t>(written[i].index)] != 0;
+  }
+  work.sample_rate = pass.state.raster.sample_rate;
+  for (const DrawBatch& batch : pass.batches) {
+    work.sample_rate = work.sample_rate || batch.state.raster.sample_rate;
+    if (batch.vertex != nullptr)
+      work.attribute_scalars = std::max(work.attribute_scalars, batch.raster_scalars());
+  }
+  return work;
+}
+
+void count_commands(const FrameGraph& graph, const Pass& pass, const PassContext& c, bool barrier,
+                    std::vector<PassCounters>& chunks) {
+  for (const Command& command : record_pass(graph, pass, barrier)) {
+    const bool of_draw = pass.kind == PassKind::draw && command.draw < c.draws.size();
+    const std::size_t chunk = of_draw ? c.draws[command.draw].first_primitive / c.chunk_primitives : 0;
+    FrontEndCounters& n = chunks[std::min(chunk, chunks.size() - 1)].fe;
+    n.command_words += command_words(command.kind);
+    const bool binds =
+        command.kind == CommandKind::bind_pipeline || command.kind == CommandKind::bind_resources;
+    n.state_changes += binds ? 1 : 0;
+    n.draws += command.kind >= CommandKind::draw ? 1 : 0;  // draws, dispatches and transfers: they start work
+  }
+}
+
+void count_inputs(const PassContext& c, std::vector<PassCounters>& chunks) {
+  for (const DrawInfo& draw : c.draws) {
+    const std::size_t chunk =
+        std::min<std::size_t>(draw.first_primitive / c.chunk_primitives, chunks.size() - 1);
+    // Transforms and material, as a driver would bind them.
+    chunks[chunk].mem.constant_read_bytes += 64 + 36 + sizeof(MaterialView);
+  }
+}
+
+}  // namespace hwsim::pipeline
