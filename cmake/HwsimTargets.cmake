@@ -1,7 +1,9 @@
 # Compile options shared by every target, and the function that declares a library of the project.
+# Paths below the project count as relative ones, so that every clone on a machine shares what was compiled.
 find_program(HWSIM_CCACHE ccache)
 if(HWSIM_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${HWSIM_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
+      ${HWSIM_CCACHE})
 endif()
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
