@@ -1,7 +1,6 @@
 #include "hwsim/reuse.h"
 
 #include <algorithm>
-#include <unordered_map>
 
 namespace hwsim {
 namespace {
@@ -67,18 +66,56 @@ class CurveBuilder {
   std::array<MissCurve, kReuseStreams>& curves_;
 };
 
-/// Curves of the streams of `accesses`, which share one cache.
-void build_curves(std::span<const BlockAccess> accesses, const BlockKinds& kinds,
+/// Stays by stream and block: a table that is filled at most by half, so that a look ends soon.
+class StayTable {
+ public:
+  explicit StayTable(std::size_t accesses) {
+    std::size_t size = 16;
+    while (size < 2 * accesses) size *= 2;
+    slots_.assign(size, 0);
+  }
+  Stay& of(ReuseStream stream, std::uint32_t block) {
+    std::size_t slot = (block_hash(block) * kReuseStreams + at(stream)) & (slots_.size() - 1);
+    while (slots_[slot] != 0 && !is(keys_[slots_[slot] - 1], stream, block))
+      slot = (slot + 1) & (slots_.size() - 1);
+    if (slots_[slot] == 0) {
+      keys_.push_back({stream, block});
+      stays_.emplace_back();
+      slots_[slot] = static_cast<std::uint32_t>(stays_.size());
+    }
+    return stays_[slots_[slot] - 1];
+  }
+  template <class Visit>
+  void each(Visit&& visit) const {
+    for (std::size_t i = 0; i < stays_.size(); ++i) visit(keys_[i].stream, stays_[i]);
+  }
+
+ private:
+  struct Key {
+    ReuseStream stream;
+    std::uint32_t block;
+  };
+  static bool is(const Key& key, ReuseStream stream, std::uint32_t block) {
+    return key.stream == stream && key.block == block;
+  }
+  std::vector<std::uint32_t> slots_;  ///< number of the stay + 1; 0: free
+  std::vector<Key> keys_;
+  std::vector<Stay> stays_;
+};
+
+/// Curves of the streams that `belongs` takes, which share one cache.
+template <class Belongs>
+void build_curves(std::span<const BlockAccess> accesses, const BlockKinds& kinds, Belongs&& belongs,
                   std::array<MissCurve, kReuseStreams>& curves) {
   CurveBuilder builder(kinds, curves);
-  std::unordered_map<std::uint64_t, Stay> stays;
-  stays.reserve(accesses.size() / 4 + 1);
+  StayTable stays(accesses.size());
   PrefixSums present(accesses.size());
   for (std::size_t i = 0; i < accesses.size(); ++i) {
     const BlockAccess& a = accesses[i];
+    if (!belongs(a.stream)) continue;
     const BlockKind& kind = kinds[at(a.stream)];
     const auto weight = static_cast<std::int64_t>(kind.bytes) << kind.shift;
-    Stay& stay = stays[static_cast<std::uint64_t>(at(a.stream)) << 32 | a.block];
+    Stay& stay = stays.of(a.stream, a.block);
     std::size_t missing = kSizes;
     if (stay.last != 0) {
       const std::int64_t others = present.before(i) - present.before(stay.last);
@@ -89,8 +126,9 @@ void build_curves(std::span<const BlockAccess> accesses, const BlockKinds& kinds
     present.add(i, weight);
     stay.last = i + 1;
   }
-  for (const auto& [key, stay] : stays)
-    for (std::size_t k = 0; k < kSizes; ++k) builder.leave(stay, static_cast<ReuseStream>(key >> 32), k);
+  stays.each([&](ReuseStream stream, const Stay& stay) {
+    for (std::size_t k = 0; k < kSizes; ++k) builder.leave(stay, stream, k);
+  });
 }
 
 /// Fewer blocks of a stream that has too many accesses.
@@ -125,22 +163,27 @@ int sizes_below(std::uint64_t bytes) {
   return count;
 }
 
-ReuseProfile analyze_reuse(std::vector<BlockAccess> accesses, BlockKinds kinds, std::size_t accesses_max) {
+void run_in_order(std::size_t count, const std::function<void(std::size_t)>& part) {
+  for (std::size_t i = 0; i < count; ++i) part(i);
+}
+
+ReuseProfile analyze_reuse(std::vector<BlockAccess> accesses, BlockKinds kinds, std::size_t accesses_max,
+                           const RunParts& run_parts) {
   thin(accesses, kinds, accesses_max);
   const auto by_order = [](const BlockAccess& a, const BlockAccess& b) { return a.order < b.order; };
   if (!std::is_sorted(accesses.begin(), accesses.end(), by_order))
     std::stable_sort(accesses.begin(), accesses.end(), by_order);
   ReuseProfile profile;
   count_requests(accesses, kinds, profile);
-  build_curves(accesses, kinds, profile.shared);
-  const auto alone = [&](auto&& belongs) {
-    std::vector<BlockAccess> part;
-    std::copy_if(accesses.begin(), accesses.end(), std::back_inserter(part), belongs);
-    build_curves(part, kinds, profile.apart);
+  const auto build = [&](auto&& belongs, std::array<MissCurve, kReuseStreams>& curves) {
+    build_curves(accesses, kinds, belongs, curves);
   };
-  alone([](const BlockAccess& a) { return a.stream == ReuseStream::color; });
-  alone([](const BlockAccess& a) { return a.stream == ReuseStream::depth; });
-  alone([](const BlockAccess& a) { return at(a.stream) >= at(ReuseStream::texture); });
+  run_parts(4, [&](std::size_t part) {  // each writes curves of its own
+    if (part == 0) build([](ReuseStream) { return true; }, profile.shared);
+    if (part == 1) build([](ReuseStream s) { return s == ReuseStream::color; }, profile.apart);
+    if (part == 2) build([](ReuseStream s) { return s == ReuseStream::depth; }, profile.apart);
+    if (part == 3) build([](ReuseStream s) { return at(s) >= at(ReuseStream::texture); }, profile.apart);
+  });
   return profile;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -79,8 +80,13 @@ constexpr bool is_sampled(std::uint32_t block, int shift) {
   return (block_hash(block) & ~(0xffffffffu >> shift)) == 0;
 }
 
+/// Calls part(i) for i in [0, count), in any order or side by side.
+using RunParts = std::function<void(std::size_t count, const std::function<void(std::size_t)>& part)>;
+void run_in_order(std::size_t count, const std::function<void(std::size_t)>& part);
+
 /// The curves of a pass. Streams with more accesses than `accesses_max` are thinned first.
-ReuseProfile analyze_reuse(std::vector<BlockAccess> accesses, BlockKinds kinds, std::size_t accesses_max);
+ReuseProfile analyze_reuse(std::vector<BlockAccess> accesses, BlockKinds kinds, std::size_t accesses_max,
+                           const RunParts& run_parts = run_in_order);
 
 /// Reuse distances in the small window of a first-level cache: a list of sampled blocks, latest first.
 class RecentBlocks {

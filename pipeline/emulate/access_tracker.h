@@ -100,6 +100,7 @@ constexpr int sample_shift(std::uint64_t blocks, int shift_max) {
 
 /// Profile of a pass from what its workers noted.
 ReuseProfile make_reuse_profile(std::vector<std::vector<BlockAccess>> by_worker, const BlockKinds& kinds,
-                                const std::array<std::uint64_t, kCacheSizes + 1>& l1_missing, bool exact);
+                                const std::array<std::uint64_t, kCacheSizes + 1>& l1_missing, bool exact,
+                                int jobs);
 
 }  // namespace hwsim::pipeline

@@ -119,10 +119,14 @@ class BinColor : protected BinDepth {
     GpuImage& image = *c_.color[target];
     EncodedBatch texels;
     encode_batch(image.format, batch.color[target], image.words, batch.valid_lanes, texels);
-    for (int q = 0; q < to.count; ++q) {
-      const std::uint8_t lazy = begin_quad(target, to, q, batch.sample_index >= 0, samples, false);
-      for (int s = samples.begin; s < samples.end; ++s)
-        store_sample(image, to, q, s, sample_mask(q, batch.sample_index >= 0, samples, s), lazy, texels);
+    const bool of_sample_batch = batch.sample_index >= 0;
+    for (QuadRun run{}; run.end < to.count;) {
+      const int first = run.end;
+      run = begin_run(target, to, first, of_sample_batch, samples, false);
+      for (int q = first; q < run.end; ++q)
+        for (int s = samples.begin; s < samples.end; ++s)
+          store_sample(image, to, q, s, sample_mask(q, of_sample_batch, samples, s), run.lazy_of(to, q),
+                       texels);
     }
   }
 
@@ -131,8 +135,11 @@ class BinColor : protected BinDepth {
                    const WriteTargets& to, const ColorSamples& samples) {
     GpuImage& image = *c_.color[target];
     std::uint8_t lazy[kBatchQuads];
-    for (int q = 0; q < to.count; ++q)
-      lazy[q] = begin_quad(target, to, q, batch.sample_index >= 0, samples, true);
+    for (QuadRun run{}; run.end < to.count;) {
+      const int first = run.end;
+      run = begin_run(target, to, first, batch.sample_index >= 0, samples, true);
+      for (int q = first; q < run.end; ++q) lazy[q] = run.lazy_of(to, q);
+    }
     EncodedBatch texels;
     for (int s = samples.begin; s < samples.end; ++s) {
       blend_batch(image, state, batch.color[target], to, s, texels);
@@ -141,16 +148,32 @@ class BinColor : protected BinDepth {
     }
   }
 
-  /// begin_write for a quad: its lanes of its tile.
-  std::uint8_t begin_quad(std::size_t target, const WriteTargets& to, int q, bool of_sample_batch,
-                          const ColorSamples& samples, bool reads) {
-    const int shift = 4 * to.quad_in_block[q];
+  /// Quads up to `end` that follow each other in one tile, on different pixels.
+  struct QuadRun {
+    int end = 0;
+    std::uint64_t lazy = 0;  ///< lanes of the tile that need only sample 0
+
+    std::uint8_t lazy_of(const WriteTargets& to, int q) const {
+      return static_cast<std::uint8_t>(lazy >> (4 * to.quad_in_block[q]) & 15);
+    }
+  };
+
+  /// begin_write for the quads that follow `first` in its tile: once for all, as triangles leave several.
+  QuadRun begin_run(std::size_t target, const WriteTargets& to, int first, bool of_sample_batch,
+                    const ColorSamples& samples, bool reads) {
     std::uint64_t combined[kMaxSamples] = {};
-    for (int s = samples.begin; s < samples.end; ++s)
-      combined[s] = std::uint64_t{sample_mask(q, of_sample_batch, samples, s)} << shift;
+    std::uint32_t taken = 0;
+    QuadRun run{first, 0};
+    for (; run.end < to.count && to.block[run.end] == to.block[first]; ++run.end) {
+      const int quad = to.quad_in_block[run.end];
+      if ((taken >> quad & 1) != 0) break;
+      taken |= 1u << quad;
+      for (int s = samples.begin; s < samples.end; ++s)
+        combined[s] |= std::uint64_t{sample_mask(run.end, of_sample_batch, samples, s)} << (4 * quad);
+    }
     const TileWrite write = describe(*c_.color[target], combined, samples, reads);
-    if (write.any == 0) return 0;
-    return static_cast<std::uint8_t>(begin_write(target, to.block[q], combined, write) >> shift & 15);
+    if (write.any != 0) run.lazy = begin_write(target, to.block[first], combined, write);
+    return run;
   }
 
   static void store_sample(GpuImage& image, const WriteTargets& to, int q, int s, std::uint8_t mask,

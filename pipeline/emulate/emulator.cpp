@@ -227,24 +227,25 @@ class FrameRunner {
     if (c.depth != nullptr) std::fill(c.depth->touched_chunk.begin(), c.depth->touched_chunk.end(), 0);
   }
 
-  void save_depth(GpuImage& depth) {
-    for (int block = 0; block < static_cast<int>(depth.unsaved.size()); ++block)
-      save_depth_tile(depth, block, workers_.front().chunks);
-  }
-
-  void save_color(GpuImage& color) {
-    for (int block = 0; block < static_cast<int>(color.unsaved.size()); ++block)
-      save_color_tile(color, block, workers_.front().chunks);
+  /// Gives what was written back to memory, each tile at the cost of the chunk that used it last.
+  template <class Save>
+  void save_tiles(GpuImage& target, Save&& save) {
+    constexpr std::size_t kTilesAtOnce = 512;
+    const std::size_t tiles = target.unsaved.size();
+    parallel_for((tiles + kTilesAtOnce - 1) / kTilesAtOnce, options_.jobs, [&](std::size_t i, int worker) {
+      for (std::size_t tile = i * kTilesAtOnce; tile < std::min(tiles, (i + 1) * kTilesAtOnce); ++tile)
+        save(target, static_cast<int>(tile), workers_[static_cast<std::size_t>(worker)].chunks);
+    });
   }
 
   // Integer sums: the same whichever worker counted.
   void finish_workers(const Pass& pass, PassWork& work) {
-    if (pass.depth) save_depth(image(pass.depth));
-    for (const ImageId id : pass.color) save_color(image(id));
+    if (pass.depth) save_tiles(image(pass.depth), save_depth_tile);
+    for (const ImageId id : pass.color) save_tiles(image(id), save_color_tile);
     work.chunks.assign(workers_.front().chunks.size(), PassCounters{});
     for (const BinWorker& worker : workers_)
       for (std::size_t i = 0; i < work.chunks.size(); ++i) work.chunks[i] += worker.chunks[i];
-    work.reuse = merge_reuse(workers_, work, options_.exact_reuse);
+    work.reuse = merge_reuse(workers_, work, options_.exact_reuse, options_.jobs);
     if (!pass.storage.empty()) share_same_address(workers_, work);
   }
 

@@ -20,7 +20,7 @@ BlockKinds block_kinds(const FrameGraph& graph, const Pass& pass, const PassCont
                        std::uint64_t texture_lines, bool exact);
 
 /// Takes the workers' accesses.
-ReuseProfile merge_reuse(std::span<BinWorker> workers, const PassWork& work, bool exact);
+ReuseProfile merge_reuse(std::span<BinWorker> workers, const PassWork& work, bool exact, int jobs);
 
 /// Chunks share the most frequent address in proportion to their atomics.
 void share_same_address(std::span<const BinWorker> workers, PassWork& work);
