@@ -1,0 +1,243 @@
+// How near each technique comes to the ray-traced truth, and how still its images stand while the camera
+// moves by parts of a pixel: Markdown tables on standard output.
+//
+//   quality_study [--samples=256] [--size=480x270] [--frames=8] [--jobs=2] [scene ...]
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "algos/reference_frame.h"
+#include "algos/technique.h"
+#include "hwsim/base/diagnostics.h"
+#include "pipeline/base/file_io.h"
+#include "pipeline/emulate/emulator.h"
+#include "pipeline/image/metrics.h"
+#include "pipeline/scene/generate/registry.h"
+#include "pipeline/scene/scene_source.h"
+
+namespace hwsim::benchmarks {
+namespace {
+using pipeline::Image;
+
+constexpr const char* kTechniques[] = {
+    "none",         "msaa4x",         "msaa8x",   "ssaa4x",
+    "ssaa16x",      "ssaa64x",        "deferred", "deferred_simple_complex",
+    "sbaa_top:n=4", "sbaa_merge:n=4", "agaa:c=2", "agaa:c=3",
+    "sss_gs",       "sss_cs",         "sss_ppll", "wire_aa+msaa4x",
+    "fxaa",         "axaa",           "smaa",     "cmaa",
+    "mlaa"};
+
+struct Study {
+  int width_px = 480, height_px = 270;
+  int samples = 256, frames = 8, jobs = 2;
+  std::vector<std::string> scenes;
+};
+
+/// What a GPU can do that has all that the papers ask for.
+GpuFeatures every_feature() {
+  GpuFeatures features;
+  features.target_independent_raster = true;
+  features.post_depth_coverage = true;
+  features.coverage_override = true;
+  features.viewport_multicast = true;
+  features.programmable_sample_positions = true;
+  features.conservative_raster = true;
+  features.float_atomics = true;
+  return features;
+}
+
+using ScenePointer = std::shared_ptr<const pipeline::Scene>;
+
+/// The scene seen by its first camera turned so that the picture moves by `pan_px`.
+ScenePointer panned(const ScenePointer& scene, glm::vec2 pan_px, const Study& study) {
+  if (pan_px == glm::vec2(0.0f)) return scene;
+  auto moved = std::make_shared<pipeline::Scene>(*scene);
+  pipeline::Camera& camera = moved->cameras.front();
+  if (camera.orthographic) {
+    const float meters = 2.0f * camera.ortho_half_height_m / static_cast<float>(study.height_px);
+    camera.view_from_world =
+        glm::translate(glm::mat4(1.0f), glm::vec3(pan_px.x * meters, -pan_px.y * meters, 0.0f)) *
+        camera.view_from_world;
+    return moved;
+  }
+  const float radians = 2.0f * std::tan(camera.fov_y_rad * 0.5f) / static_cast<float>(study.height_px);
+  const glm::mat4 turn = glm::rotate(glm::mat4(1.0f), -pan_px.x * radians, glm::vec3(0.0f, 1.0f, 0.0f)) *
+                         glm::rotate(glm::mat4(1.0f), -pan_px.y * radians, glm::vec3(1.0f, 0.0f, 0.0f));
+  camera.view_from_world = turn * camera.view_from_world;
+  return moved;
+}
+
+algos::FrameRequest request_of(const ScenePointer& scene, const Study& study) {
+  algos::FrameRequest request;
+  request.scene = scene;
+  request.width_px = study.width_px;
+  request.height_px = study.height_px;
+  request.shadows = false;  // a shadow map's own error hides the edges'
+  request.features = every_feature();
+  return request;
+}
+
+Image frame(const std::string& technique, const ScenePointer& scene, const Study& study) {
+  pipeline::EmulationOptions options;
+  options.jobs = study.jobs;
+  const algos::FrameRequest request = request_of(scene, study);
+  const pipeline::FrameGraph graph = algos::build_frame(algos::parse_technique(technique), request);
+  return pipeline::emulate(graph, request.features, FunctionalConfig{}, options).color;
+}
+
+Image truth(const ScenePointer& scene, int samples, const Study& study) {
+  algos::ReferenceFrameOptions options;
+  options.samples = samples;
+  options.jobs = study.jobs;
+  return algos::render_reference_frame(request_of(scene, study), options);
+}
+
+float shown_luma(const glm::vec4& linear) {
+  const auto shown = [](float v) { return pipeline::srgb_from_linear(std::clamp(v, 0.0f, 1.0f)); };
+  return 0.2126f * shown(linear.x) + 0.7152f * shown(linear.y) + 0.0722f * shown(linear.z);
+}
+
+/// Pixels within one of a pixel that the truth shows as bright as few others are.
+std::vector<char> highlights(const Image& reference) {
+  std::vector<char> mask(reference.pixels.size(), 0);
+  for (int y = 0; y < reference.height; ++y)
+    for (int x = 0; x < reference.width; ++x) {
+      if (shown_luma(reference.at(x, y)) < 0.9f) continue;
+      for (int v = std::max(0, y - 1); v <= std::min(reference.height - 1, y + 1); ++v)
+        for (int u = std::max(0, x - 1); u <= std::min(reference.width - 1, x + 1); ++u)
+          mask[static_cast<std::size_t>(v * reference.width + u)] = 1;
+    }
+  return mask;
+}
+
+/// Root mean square of the luma's error where `mask` says so; not a number where it never does.
+double masked_rmse(const Image& image, const Image& reference, const std::vector<char>& mask) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (mask[i] == 0) continue;
+    const double e = shown_luma(image.pixels[i]) - shown_luma(reference.pixels[i]);
+    sum += e * e;
+    ++count;
+  }
+  return count == 0 ? std::nan("") : std::sqrt(sum / static_cast<double>(count));
+}
+
+void errors(const std::string& name, const ScenePointer& scene, const Study& study) {
+  const Image reference = truth(scene, study.samples, study);
+  const std::vector<char> bright = highlights(reference);
+  const auto share =
+      static_cast<double>(std::count(bright.begin(), bright.end(), 1)) / static_cast<double>(bright.size());
+  std::printf(
+      "\n### %s\n\nHighlights: %.2f %% of the pixels.\n\n"
+      "| technique | PSNR dB | RMSE | SSIM | FLIP | RMSE of highlights |\n|---|---|---|---|---|---|\n",
+      name.c_str(), 100.0 * share);
+  for (const char* technique : kTechniques) {
+    try {
+      const Image image = frame(technique, scene, study);
+      const pipeline::ImageError e = pipeline::compare(image, reference);
+      std::printf("| `%s` | %.2f | %.4f | %.4f | %.4f | %.4f |\n", technique, e.psnr_db, e.rmse, e.ssim,
+                  e.flip_mean, masked_rmse(image, reference, bright));
+    } catch (const InputError& error) {
+      std::printf("| `%s` | %s | | | | |\n", technique, error.diagnostics().front().message.c_str());
+    }
+    std::fflush(stdout);
+  }
+}
+
+/// The variance over the frames of what differs from each frame's own truth, as a standard deviation: an
+/// error that stays where it is does not flicker.
+void stability(const std::string& name, const ScenePointer& scene, const Study& study) {
+  std::vector<ScenePointer> views;
+  std::vector<Image> references;
+  for (int i = 0; i < study.frames; ++i) {
+    const float t = static_cast<float>(i) / static_cast<float>(study.frames);
+    views.push_back(panned(scene, {t, std::fmod(3.0f * t, 1.0f)}, study));
+    references.push_back(truth(views.back(), std::max(16, study.samples / 4), study));
+  }
+  std::printf("\n### %s, %d frames\n\n| technique | flicker | of `none` |\n|---|---|---|\n", name.c_str(),
+              study.frames);
+  double of_none = 0.0;
+  for (const char* technique : {"none", "msaa8x", "ssaa64x", "deferred_simple_complex", "sbaa_top:n=4",
+                                "agaa:c=2", "sss_cs", "sss_ppll", "wire_aa+msaa4x", "fxaa", "smaa"}) {
+    std::vector<double> sum(references.front().pixels.size()), squares(sum.size());
+    for (int i = 0; i < study.frames; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const Image image = frame(technique, views[k], study);
+      for (std::size_t p = 0; p < sum.size(); ++p) {
+        const double e = shown_luma(image.pixels[p]) - shown_luma(references[k].pixels[p]);
+        sum[p] += e;
+        squares[p] += e * e;
+      }
+    }
+    double variance = 0.0;
+    for (std::size_t p = 0; p < sum.size(); ++p)
+      variance += (squares[p] - sum[p] * sum[p] / study.frames) / study.frames;
+    const double flicker = std::sqrt(std::max(0.0, variance / static_cast<double>(sum.size())));
+    if (of_none == 0.0) of_none = flicker;
+    std::printf("| `%s` | %.4f | %.2f |\n", technique, flicker, flicker / of_none);
+    std::fflush(stdout);
+  }
+}
+
+int number_after(std::string_view argument, std::string_view flag) {
+  return std::max(1, std::atoi(std::string(argument.substr(flag.size())).c_str()));
+}
+
+Study parse(int argc, char** argv) {
+  Study study;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (argument.starts_with("--samples="))
+      study.samples = number_after(argument, "--samples=");
+    else if (argument.starts_with("--frames="))
+      study.frames = std::atoi(argv[i] + std::string_view("--frames=").size());
+    else if (argument.starts_with("--jobs="))
+      study.jobs = number_after(argument, "--jobs=");
+    else if (argument.starts_with("--size=")) {
+      study.width_px = number_after(argument, "--size=");
+      study.height_px = number_after(argument, argument.substr(0, argument.find('x') + 1));
+    } else {
+      study.scenes.emplace_back(argument);
+    }
+  }
+  if (study.scenes.empty())
+    for (const pipeline::GeneratorInfo& generator : pipeline::generators())
+      study.scenes.push_back(generator.name);
+  return study;
+}
+
+}  // namespace
+}  // namespace hwsim::benchmarks
+
+int main(int argc, char** argv) {
+  using namespace hwsim;
+  using namespace hwsim::benchmarks;
+  const Study study = parse(argc, argv);
+  try {
+    std::printf(
+        "# Quality\n\n%dx%d, no shadow map, against %d samples a pixel traced by rays; sRGB values in "
+        "[0,1].\n",
+        study.width_px, study.height_px, study.samples);
+    for (const std::string& name : study.scenes) {
+      const ScenePointer scene = std::make_shared<const pipeline::Scene>(
+          pipeline::open_scene(name, pipeline::default_cache_directory()));
+      const std::string shown = name.substr(name.find_last_of('/') + 1);
+      errors(shown, scene, study);
+      if (study.frames > 1) stability(shown, scene, study);
+    }
+  } catch (const InputError& error) {
+    for (const Diagnostic& d : error.diagnostics())
+      std::fprintf(stderr, "%s: %s\n", d.code.c_str(), d.message.c_str());
+    return 3;
+  }
+  return 0;
+}
