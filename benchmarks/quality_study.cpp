@@ -17,6 +17,7 @@
 #include "algos/reference_frame.h"
 #include "algos/technique.h"
 #include "hwsim/base/diagnostics.h"
+#include "hwsim/config/every_feature.h"
 #include "pipeline/base/file_io.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/image/metrics.h"
@@ -40,19 +41,6 @@ struct Study {
   int samples = 256, frames = 8, jobs = 2;
   std::vector<std::string> scenes;
 };
-
-/// What a GPU can do that has all that the papers ask for.
-GpuFeatures every_feature() {
-  GpuFeatures features;
-  features.target_independent_raster = true;
-  features.post_depth_coverage = true;
-  features.coverage_override = true;
-  features.viewport_multicast = true;
-  features.programmable_sample_positions = true;
-  features.conservative_raster = true;
-  features.float_atomics = true;
-  return features;
-}
 
 using ScenePointer = std::shared_ptr<const pipeline::Scene>;
 
@@ -81,7 +69,7 @@ algos::FrameRequest request_of(const ScenePointer& scene, const Study& study) {
   request.width_px = study.width_px;
   request.height_px = study.height_px;
   request.shadows = false;  // a shadow map's own error hides the edges'
-  request.features = every_feature();
+  request.features = every_feature(8);
   return request;
 }
 

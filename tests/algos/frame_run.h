@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "algos/technique.h"
+#include "hwsim/config/every_feature.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/scene/scene_source.h"
 #include "support/places.h"
@@ -37,17 +38,7 @@ inline std::shared_ptr<const pipeline::Scene> generated_scene(const std::string&
 }
 
 /// Everything but native sample counts beyond 8: so techniques take the paths that need features.
-inline GpuFeatures test_features() {
-  GpuFeatures features;
-  features.target_independent_raster = true;
-  features.post_depth_coverage = true;
-  features.coverage_override = true;
-  features.viewport_multicast = true;
-  features.programmable_sample_positions = true;
-  features.conservative_raster = true;
-  features.float_atomics = true;
-  return features;
-}
+inline GpuFeatures test_features() { return every_feature(8); }
 
 struct FrameSetup {
   std::string technique, scene;

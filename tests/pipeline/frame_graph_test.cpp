@@ -266,7 +266,7 @@ TEST(Validate, MulticastNeedsTheFeatureAndLayersToWrite) {
 TEST(Validate, CoverageStates) {
   const auto spoil = [](bool features, auto&& change) {
     return codes_of([&](Draft& d) {
-      if (features) d.features = test::every_feature();
+      if (features) d.features = every_feature(32);
       change(d.draw().batches.front());
     });
   };

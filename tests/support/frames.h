@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hwsim/config/every_feature.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/emulate/fragment_batch.h"
 #include "pipeline/shade/mesh_vertex.h"
@@ -107,18 +108,6 @@ inline const pipeline::FragmentProgram& unfold_program() {
   return program;
 }
 
-inline GpuFeatures every_feature() {
-  GpuFeatures features;
-  features.native_msaa_max = 32;
-  features.target_independent_raster = true;
-  features.post_depth_coverage = true;
-  features.coverage_override = true;
-  features.viewport_multicast = true;
-  features.programmable_sample_positions = true;
-  features.conservative_raster = true;
-  return features;
-}
-
 /// A frame with one color and one depth image, cleared first; add draws, then `run` for all samples' red and
 /// depth.
 class SampleFrame {
@@ -175,7 +164,7 @@ class SampleFrame {
     pass.fragment = &unfold_program();
     pass.uniforms = std::make_shared<int>(planes);
     graph.set_output(out);
-    return pipeline::emulate(graph, every_feature(), FunctionalConfig{}, options);
+    return pipeline::emulate(graph, every_feature(32), FunctionalConfig{}, options);
   }
 
   pipeline::ImageId color() const { return color_; }
