@@ -1,7 +1,8 @@
 // How near each technique comes to the ray-traced truth, and how still its images stand while the camera
 // moves by parts of a pixel: Markdown tables on standard output.
 //
-//   quality_study [--samples=256] [--size=480x270] [--frames=8] [--jobs=2] [scene ...]
+//   quality_study [--samples=256] [--size=480x270] [--frames=8] [--jobs=2] [--only=errors|stability] [scene
+//   ...]
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -28,19 +29,38 @@ namespace hwsim::benchmarks {
 namespace {
 using pipeline::Image;
 
-constexpr const char* kTechniques[] = {
+/// Of the tables of errors, and of those of flicker, where none is asked for.
+constexpr const char* kCompared[] = {
     "none",         "msaa4x",         "msaa8x",   "ssaa4x",
     "ssaa16x",      "ssaa64x",        "deferred", "deferred_simple_complex",
-    "sbaa_top:n=4", "sbaa_merge:n=4", "agaa:c=2", "agaa:c=3",
+    "sbaa_top:n=4", "sbaa_merge:n=4", "agaa:c=2", "agaa:c=2,diffuse_filter=geometric",
     "sss_gs",       "sss_cs",         "sss_ppll", "wire_aa+msaa4x",
     "fxaa",         "axaa",           "smaa",     "cmaa",
     "mlaa"};
+constexpr const char* kWatched[] = {"none",
+                                    "msaa8x",
+                                    "ssaa64x",
+                                    "deferred_simple_complex",
+                                    "sbaa_top:n=4",
+                                    "agaa:c=2,diffuse_filter=geometric",
+                                    "sss_cs",
+                                    "sss_ppll",
+                                    "wire_aa+msaa4x",
+                                    "fxaa",
+                                    "smaa"};
 
 struct Study {
   int width_px = 480, height_px = 270;
   int samples = 256, frames = 8, jobs = 2;
-  std::vector<std::string> scenes;
+  bool errors = true, stability = true;
+  std::vector<std::string> scenes, techniques;
 };
+
+template <std::size_t kCount>
+std::vector<std::string> asked_or(const char* const (&usual)[kCount], const Study& study) {
+  return study.techniques.empty() ? std::vector<std::string>(std::begin(usual), std::end(usual))
+                                  : study.techniques;
+}
 
 using ScenePointer = std::shared_ptr<const pipeline::Scene>;
 
@@ -128,14 +148,14 @@ void errors(const std::string& name, const ScenePointer& scene, const Study& stu
       "\n### %s\n\nHighlights: %.2f %% of the pixels.\n\n"
       "| technique | PSNR dB | RMSE | SSIM | FLIP | RMSE of highlights |\n|---|---|---|---|---|---|\n",
       name.c_str(), 100.0 * share);
-  for (const char* technique : kTechniques) {
+  for (const std::string& technique : asked_or(kCompared, study)) {
     try {
       const Image image = frame(technique, scene, study);
       const pipeline::ImageError e = pipeline::compare(image, reference);
-      std::printf("| `%s` | %.2f | %.4f | %.4f | %.4f | %.4f |\n", technique, e.psnr_db, e.rmse, e.ssim,
-                  e.flip_mean, masked_rmse(image, reference, bright));
+      std::printf("| `%s` | %.2f | %.4f | %.4f | %.4f | %.4f |\n", technique.c_str(), e.psnr_db, e.rmse,
+                  e.ssim, e.flip_mean, masked_rmse(image, reference, bright));
     } catch (const InputError& error) {
-      std::printf("| `%s` | %s | | | | |\n", technique, error.diagnostics().front().message.c_str());
+      std::printf("| `%s` | %s | | | | |\n", technique.c_str(), error.diagnostics().front().message.c_str());
     }
     std::fflush(stdout);
   }
@@ -154,8 +174,7 @@ void stability(const std::string& name, const ScenePointer& scene, const Study& 
   std::printf("\n### %s, %d frames\n\n| technique | flicker | of `none` |\n|---|---|---|\n", name.c_str(),
               study.frames);
   double of_none = 0.0;
-  for (const char* technique : {"none", "msaa8x", "ssaa64x", "deferred_simple_complex", "sbaa_top:n=4",
-                                "agaa:c=2", "sss_cs", "sss_ppll", "wire_aa+msaa4x", "fxaa", "smaa"}) {
+  for (const std::string& technique : asked_or(kWatched, study)) {
     std::vector<double> sum(references.front().pixels.size()), squares(sum.size());
     for (int i = 0; i < study.frames; ++i) {
       const auto k = static_cast<std::size_t>(i);
@@ -171,7 +190,7 @@ void stability(const std::string& name, const ScenePointer& scene, const Study& 
       variance += (squares[p] - sum[p] * sum[p] / study.frames) / study.frames;
     const double flicker = std::sqrt(std::max(0.0, variance / static_cast<double>(sum.size())));
     if (of_none == 0.0) of_none = flicker;
-    std::printf("| `%s` | %.4f | %.2f |\n", technique, flicker, flicker / of_none);
+    std::printf("| `%s` | %.4f | %.2f |\n", technique.c_str(), flicker, flicker / of_none);
     std::fflush(stdout);
   }
 }
@@ -187,9 +206,15 @@ Study parse(int argc, char** argv) {
     if (argument.starts_with("--samples="))
       study.samples = number_after(argument, "--samples=");
     else if (argument.starts_with("--frames="))
-      study.frames = std::atoi(argv[i] + std::string_view("--frames=").size());
+      study.frames = std::max(2, number_after(argument, "--frames="));
     else if (argument.starts_with("--jobs="))
       study.jobs = number_after(argument, "--jobs=");
+    else if (argument.starts_with("--technique="))
+      study.techniques.emplace_back(argument.substr(std::string_view("--technique=").size()));
+    else if (argument == "--only=errors")
+      study.stability = false;
+    else if (argument == "--only=stability")
+      study.errors = false;
     else if (argument.starts_with("--size=")) {
       study.width_px = number_after(argument, "--size=");
       study.height_px = number_after(argument, argument.substr(0, argument.find('x') + 1));
@@ -219,8 +244,8 @@ int main(int argc, char** argv) {
       const ScenePointer scene = std::make_shared<const pipeline::Scene>(
           pipeline::open_scene(name, pipeline::default_cache_directory()));
       const std::string shown = name.substr(name.find_last_of('/') + 1);
-      errors(shown, scene, study);
-      if (study.frames > 1) stability(shown, scene, study);
+      if (study.errors) errors(shown, scene, study);
+      if (study.stability) stability(shown, scene, study);
     }
   } catch (const InputError& error) {
     for (const Diagnostic& d : error.diagnostics())

@@ -63,14 +63,14 @@ struct MovedRatio {
   T read, write;
 };
 
-/// A target that was cleared is not read for a block's first stay.
+/// A target that was cleared is not read for a block's first stay. Rounding may end a line below zero.
 template <class T>
 MovedRatio<T> moved_by(const MissCurve& curve, const T& cache_bytes, bool cleared_before) {
-  MovedRatio<T> moved{moved_ratio(curve.read_bytes, curve.requested_read_bytes, cache_bytes),
-                      moved_ratio(curve.write_bytes, curve.requested_write_bytes, cache_bytes)};
-  if (cleared_before && curve.requested_read_bytes > 0)
-    moved.read -= moved_ratio(curve.first_read_bytes, curve.requested_read_bytes, cache_bytes);
-  return moved;
+  std::array<std::uint64_t, kCacheSizes> read = curve.read_bytes;
+  if (cleared_before)
+    for (std::size_t k = 0; k < read.size(); ++k) read[k] -= curve.first_read_bytes[k];
+  return {larger(moved_ratio(read, curve.requested_read_bytes, cache_bytes), T(0.0)),
+          larger(moved_ratio(curve.write_bytes, curve.requested_write_bytes, cache_bytes), T(0.0))};
 }
 
 /// Color or depth: a cache in the ROPs, and L2 behind it where they go through it. Tile memory keeps a tile

@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <random>
 
+#include "hwsim/timing/traffic.h"
+
 namespace hwsim {
 namespace {
 
@@ -160,6 +162,24 @@ TEST(MovedRatio, IsLinearBetweenSizesAndOneWhereNothingIsKnown) {
   EXPECT_DOUBLE_EQ(moved_ratio(bytes, 1000, 2048.0), 0.4);
   EXPECT_DOUBLE_EQ(moved_ratio(bytes, 1000, 1e12), 0.0);
   EXPECT_DOUBLE_EQ(moved_ratio(bytes, 0, 1024.0), 1.0);
+}
+
+TEST(Reuse, ClearedTargetsNeverReadLessThanNothing) {
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 100000; ++i) {
+    MissCurve curve;
+    curve.requested_read_bytes = 1 + random() % 1000000;
+    std::uint64_t later = 1 + random() % 100000;  // reads of what was there before, none from some size on
+    for (std::size_t k = 0; k < kCacheSizes; ++k, later /= 3) {
+      curve.first_read_bytes[k] = random() % 100000;
+      curve.read_bytes[k] = curve.first_read_bytes[k] + later;
+    }
+    const double cache_bytes =
+        1024.0 * static_cast<double>(1 << random() % 16);  // ends of lines, where they round
+    const double ratio = moved_by(curve, cache_bytes, true).read;
+    ASSERT_GE(ratio, 0.0) << cache_bytes;
+    ASSERT_LE(ratio * static_cast<double>(curve.requested_read_bytes), 100000.0 * 1.0001) << cache_bytes;
+  }
 }
 
 }  // namespace
