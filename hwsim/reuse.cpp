@@ -55,6 +55,8 @@ class CurveBuilder {
     curve.read_bytes[k] += read;
     if (stay.first[k]) curve.first_read_bytes[k] += read;
     curve.write_bytes[k] += moved(kind, stay.write[k]) << kind.shift;
+    curve.read_stays[k] += std::uint64_t{stay.read[k] > 0} << kind.shift;
+    curve.write_stays[k] += std::uint64_t{stay.write[k] > 0} << kind.shift;
   }
 
  private:

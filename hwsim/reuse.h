@@ -22,6 +22,9 @@ struct MissCurve {
   std::array<std::uint64_t, kCacheSizes> read_bytes{};
   std::array<std::uint64_t, kCacheSizes> first_read_bytes{};  ///< of these, for a block's first stay
   std::array<std::uint64_t, kCacheSizes> write_bytes{};
+  /// How often a block came in and was read, or left and had been written: bytes a stay decide what
+  /// compression saves.
+  std::array<std::uint64_t, kCacheSizes> read_stays{}, write_stays{};
   bool operator==(const MissCurve&) const = default;
 };
 

@@ -19,6 +19,8 @@ struct ColorTargetWork {
   Format format = Format::none;
   int samples = 1;
   bool blended = false;
+  bool loaded = false;  ///< it has contents that this pass goes on with: GPUs with tile memory load them
+  bool kept = true;     ///< a later pass, or the display, needs what this pass leaves: they store it
 };
 
 /// One pass. `chunks` stand in the order in which the hardware meets them: batches of triangles in submission
@@ -34,7 +36,10 @@ struct PassWork {
   Format depth_format = Format::none;
   int depth_samples = 1;
   bool depth_cleared_before = false;  ///< its depth target was fast-cleared: a first touch needs no read
+  bool depth_loaded = false;          ///< as of color targets
+  bool depth_kept = true;
   bool color_cleared_before = false;  ///< its color targets were: likewise
+  bool source_in_tile = false;        ///< a resolve of what the pass just before it drew
   std::vector<ColorTargetWork> color_targets;
   int attribute_scalars = 0;  ///< 32-bit values that the rasterizer interpolates for each fragment
   ReuseProfile reuse;         ///< what caches of any size let through

@@ -98,9 +98,12 @@ struct GpuValues {
   bool fast_clear_depth = true;
   T fast_clear_color_bytes_per_tile{0.5};
   T fast_clear_depth_bytes_per_tile{4.0};
+  int compression_granule_bytes = 32;
   bool msaa_color_compression = true;
-  T color_traffic_ratio{1.0};
-  T depth_traffic_ratio{1.0};
+  int msaa_color_block_bytes = 0;
+  T color_delta_ratio{1.0};
+  int depth_plane_slots = 4;
+  bool depth_offset_forms = false;
 
   bool rop_through_l2 = true;
   T crop_cache_kib{16.0};
@@ -120,6 +123,8 @@ struct GpuValues {
   T dram_row_cycle_ns{43.0};
   T dram_turn_ns{8.0};
   bool tile_based = false;
+  int tile_px = 256;
+  T tile_memory_kib{8.0};
 
   T pass_overhead_us{10.0};
   int queue_depth_chunks = 4;

@@ -164,15 +164,24 @@ void describe_depth(V& v, GpuValues<T>& c) {
         c.fast_clear_color_bytes_per_tile);
   v.key({"fast_clear_depth_bytes_per_tile", 0, 1e4, kCost, "table bytes of an 8x8 depth tile"},
         c.fast_clear_depth_bytes_per_tile);
-  v.key({"msaa_color_compression", 0, 0, kNoFlags,
-         "pixels whose samples share one color move one sample's bytes"},
+  v.key(
+      {"compression_granule_bytes", 1, 4096, kNoFlags, "compressed tiles and blocks move in whole granules"},
+      c.compression_granule_bytes);
+  v.key({"msaa_color_compression", 0, 0, kNoFlags, "samples of a pixel that share a color move once"},
         c.msaa_color_compression);
-  v.key({"color_traffic_ratio", kRatioLow, 1, kFit | kCost,
-         "color bytes moved to and from DRAM / uncompressed bytes"},
-        c.color_traffic_ratio);
-  v.key({"depth_traffic_ratio", kRatioLow, 1, kFit | kCost,
-         "depth bytes moved to and from DRAM / uncompressed bytes"},
-        c.depth_traffic_ratio);
+  v.key({"msaa_color_block_bytes", 0, 65536, kNoFlags,
+         "samples compressed together, all pixels of one color or none; 0: each pixel by itself, with a mask "
+         "that says which color a sample has"},
+        c.msaa_color_block_bytes);
+  v.key({"color_delta_ratio", kRatioLow, 1, kFit | kCost,
+         "bytes of single-sample color moved / uncompressed bytes"},
+        c.color_delta_ratio);
+  v.key({"depth_plane_slots", 0, 4, kRate,
+         "planes that a compressed 8x8 depth tile can hold: 4, 2 (as is 3), 1 or none"},
+        c.depth_plane_slots);
+  v.key({"depth_offset_forms", 0, 0, kNoFlags,
+         "depth tiles as 6- or 14-bit distances from their nearest or farthest value"},
+        c.depth_offset_forms);
 }
 
 template <class V, class T>
@@ -210,6 +219,11 @@ void describe_memory(V& v, GpuValues<T>& c) {
   v.key({"tile_based", 0, 0, kNoFlags,
          "depth and color of a pass live in tile memory; geometry is binned through DRAM"},
         c.tile_based);
+  v.key({"tile_px", 16, 65536, kNoFlags, "pixels of a screen tile, where the color of one fits tile memory"},
+        c.tile_px);
+  v.key({"tile_memory_kib", kRatioLow, kKibHigh, kRate,
+         "color of a tile, all samples and targets: what needs more halves the tile"},
+        c.tile_memory_kib);
 }
 
 template <class V, class T>

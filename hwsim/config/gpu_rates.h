@@ -32,13 +32,14 @@ struct GpuRates {
   T l2_byte_ns, dram_byte_ns;
   T l2_bytes;  ///< with the last-level cache behind it
   T crop_cache_bytes, zrop_cache_bytes, llc_bytes;
-  T color_traffic_ratio, depth_traffic_ratio;
+  T color_delta_ratio, tile_memory_bytes;
   T clear_color_tile_bytes, clear_depth_tile_bytes;
   T pass_overhead_ns, roofline_exponent;
   int subgroup_size, queue_depth_chunks, queue_slices_min;
+  int compression_granule_bytes, msaa_color_block_bytes, depth_plane_slots, tile_px;
   bool vliw;  ///< special functions take a slot of the words
   bool interp_on_alu, crop_compressible_at_pixel_rate, msaa_color_compression, rop_through_l2, tile_based;
-  bool fast_clear_color, fast_clear_depth, gs_on_chip;
+  bool fast_clear_color, fast_clear_depth, gs_on_chip, depth_offset_forms;
 };
 
 /// std::min and std::max return references to arguments and do not know Jets' comparisons in constant
@@ -157,8 +158,13 @@ void derive_memory(const GpuValues<T>& c, const T& clk_ns, GpuRates<T>& r) {
   r.crop_cache_bytes = c.crop_cache_kib * kKib;
   r.zrop_cache_bytes = c.zrop_cache_kib * kKib;
   r.llc_bytes = c.llc_size_kib * kKib;
-  r.color_traffic_ratio = c.color_traffic_ratio;
-  r.depth_traffic_ratio = c.depth_traffic_ratio;
+  r.compression_granule_bytes = c.compression_granule_bytes;
+  r.msaa_color_block_bytes = c.msaa_color_block_bytes;
+  r.color_delta_ratio = c.color_delta_ratio;
+  r.depth_plane_slots = c.depth_plane_slots;
+  r.depth_offset_forms = c.depth_offset_forms;
+  r.tile_px = c.tile_px;
+  r.tile_memory_bytes = c.tile_memory_kib * kKib;
   r.clear_color_tile_bytes = c.fast_clear_color_bytes_per_tile;
   r.clear_depth_tile_bytes = c.fast_clear_depth_bytes_per_tile;
   r.rop_through_l2 = c.rop_through_l2;

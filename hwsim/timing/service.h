@@ -215,6 +215,7 @@ ChunkCost<T> chunk_cost(const PassCounters& c, const PassWork& pass, const Traff
 /// A clear, whole: table bytes where the GPU has fast clear, every sample otherwise.
 template <class T>
 ChunkCost<T> clear_cost(const PassWork& pass, const GpuRates<T>& r) {
+  if (r.tile_based) return {};  // the pass that draws finds its tile memory cleared, and stores it
   const double tiles =
       static_cast<double>((pass.width_px + 7) / 8) * static_cast<double>((pass.height_px + 7) / 8);
   const double px = static_cast<double>(pass.width_px) * static_cast<double>(pass.height_px);

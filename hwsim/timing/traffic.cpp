@@ -29,13 +29,16 @@ StreamBytes requested_bytes(const PassCounters& c) {
 PassShape shape_of(const PassWork& pass) {
   PassShape shape;
   shape.sum = total(pass);
-  double samples = 0.0;
-  for (const ColorTargetWork& target : pass.color_targets) samples += target.samples;
-  if (!pass.color_targets.empty())
-    shape.color_samples = samples / static_cast<double>(pass.color_targets.size());
-  const double written = real(shape.sum.crop.written_samples);
-  const double single = real(shape.sum.crop.single_color_fragments) * shape.color_samples;
-  if (written > 0.0) shape.uncompressed_ratio = std::clamp((written - single) / written, 0.0, 1.0);
+  shape.depth_read = depth_reads(shape.sum.zrop, pass.depth_cleared_before);
+  shape.depth_write = depth_writes(shape.sum.zrop);
+  shape.color_read = color_reads(shape.sum.crop);
+  shape.color_write = color_writes(shape.sum.crop);
+  shape.depth_tile_bytes =
+      kTilePixels * pass.depth_samples * static_cast<double>(info(pass.depth_format).bytes);
+  for (const ColorTargetWork& target : pass.color_targets)
+    shape.color_tile_bytes =
+        std::max(shape.color_tile_bytes,
+                 kTilePixels * target.samples * static_cast<double>(info(target.format).bytes));
   return shape;
 }
 

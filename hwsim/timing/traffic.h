@@ -7,13 +7,13 @@
 #include <cstddef>
 
 #include "hwsim/config/gpu_rates.h"
+#include "hwsim/timing/compression.h"
 #include "hwsim/timing/timing.h"
 #include "hwsim/work_trace.h"
 
 namespace hwsim {
 
-inline constexpr double kTilePixels = 64.0;        // the trace's tiles are 8x8 pixels
-inline constexpr double kTextureLineBytes = 64.0;  // and its lines 64 bytes
+inline constexpr double kTextureLineBytes = 64.0;  // the trace's lines are 64 bytes
 
 constexpr std::size_t at(Stream stream) { return static_cast<std::size_t>(stream); }
 constexpr std::size_t at(Unit unit) { return static_cast<std::size_t>(unit); }
@@ -41,9 +41,10 @@ struct StreamBytesOf {
 
 /// What does not depend on the GPU, once a pass.
 struct PassShape {
-  double color_samples = 1.0;       ///< mean of the targets
-  double uncompressed_ratio = 1.0;  ///< color samples written outside of single-color pixels / all written
   PassCounters sum;
+  DepthMix depth_read{}, depth_write{};
+  ColorMix color_read, color_write;
+  double depth_tile_bytes = 0.0, color_tile_bytes = 0.0;  ///< raw; of the largest color target
 };
 
 /// What a chunk asks of memory, by stream, textures included.
@@ -55,7 +56,9 @@ PassShape shape_of(const PassWork& pass);
 template <class T>
 struct TrafficModel {
   StreamBytesOf<T> dram, l2;
-  T l1_fill{1.0};  ///< texture bytes beyond L1
+  StreamBytesOf<T> tile_chunk;  ///< tile memory's loads and stores: DRAM bytes of each chunk
+  double tile_px = 0.0;         ///< of its screen tiles
+  T l1_fill{1.0};               ///< texture bytes beyond L1
 };
 
 template <class T>
@@ -73,25 +76,116 @@ MovedRatio<T> moved_by(const MissCurve& curve, const T& cache_bytes, bool cleare
           larger(moved_ratio(curve.write_bytes, curve.requested_write_bytes, cache_bytes), T(0.0))};
 }
 
-/// Color or depth: a cache in the ROPs, and L2 behind it where they go through it. Tile memory keeps a tile
-/// for the whole pass.
+/// Bytes that a block moves each time it comes in or leaves; whole tiles where the trace does not know.
 template <class T>
-void model_rop(const PassWork& pass, ReuseStream reuse, const GpuRates<T>& r, TrafficModel<T>& model) {
+T stay_bytes(const std::array<std::uint64_t, kCacheSizes>& bytes,
+             const std::array<std::uint64_t, kCacheSizes>& stays, const T& cache_bytes, double tile_bytes) {
+  const T count = moved_ratio(stays, 1, cache_bytes);
+  if (!(count > T(0.0))) return T(tile_bytes);
+  return moved_ratio(bytes, 1, cache_bytes) / count;
+}
+
+/// Compression of what moves between a cache and the memory behind it.
+template <class T>
+MovedRatio<T> kept_by(const PassShape& shape, const PassWork& pass, ReuseStream reuse, const MissCurve& curve,
+                      const T& cache_bytes, const GpuRates<T>& r) {
+  const bool color = reuse == ReuseStream::color;
+  const double tile = color ? shape.color_tile_bytes : shape.depth_tile_bytes;
+  const T read = stay_bytes(curve.read_bytes, curve.read_stays, cache_bytes, tile);
+  const T write = stay_bytes(curve.write_bytes, curve.write_stays, cache_bytes, tile);
+  if (!color)
+    return {depth_kept_ratio(shape.depth_read, pass.depth_samples, tile, read, r),
+            depth_kept_ratio(shape.depth_write, pass.depth_samples, tile, write, r)};
+  if (pass.kind != PassKind::resolve)
+    return {color_kept_ratio(shape.color_read, pass, read, r),
+            color_kept_ratio(shape.color_write, pass, write, r)};
+  const auto samples = static_cast<double>(std::max<std::uint64_t>(1, shape.sum.resolve.read_samples));
+  const double sample_bytes = static_cast<double>(shape.sum.mem.color_read_bytes) / samples;
+  return {
+      T(sample_bytes > 0.0 ? multisample_ratio(shape.color_read, pass.raster_samples, sample_bytes, r) : 1.0),
+      color_kept_ratio(shape.color_write, pass, write, r)};
+}
+
+/// Color or depth: a cache in the ROPs, and L2 behind it where they go through it. Tiles are compressed on
+/// their way out of the ROPs' caches, so L2 and DRAM both see the compressed bytes.
+template <class T>
+void model_rop(const PassShape& shape, const PassWork& pass, ReuseStream reuse, const GpuRates<T>& r,
+               TrafficModel<T>& model) {
   const bool color = reuse == ReuseStream::color;
   const std::size_t i = at(color ? Stream::color : Stream::depth);
   const bool cleared = color ? pass.color_cleared_before : pass.depth_cleared_before;
   const T& own_cache = color ? r.crop_cache_bytes : r.zrop_cache_bytes;
+  const auto moved = [&](const MissCurve& curve, const T& cache) {
+    MovedRatio<T> m = moved_by(curve, cache, cleared);
+    const MovedRatio<T> kept = kept_by(shape, pass, reuse, curve, cache, r);
+    m.read *= kept.read;
+    m.write *= kept.write;
+    return m;
+  };
   const MissCurve& apart = pass.reuse.apart[at(reuse)];
-  const bool through_l2 = r.rop_through_l2 && !r.tile_based;
-  const T whole_pass(kSmallestCacheBytes * (1 << (kCacheSizes - 1)));
-  const MovedRatio<T> dram = r.tile_based ? moved_by(apart, whole_pass, cleared)
-                             : through_l2 ? moved_by(pass.reuse.shared[at(reuse)], r.l2_bytes, cleared)
-                                          : moved_by(apart, T(own_cache + r.llc_bytes), cleared);
-  const MovedRatio<T> l2 = through_l2 ? moved_by(apart, own_cache, cleared) : MovedRatio<T>{T(0.0), T(0.0)};
+  const MovedRatio<T> dram = r.rop_through_l2 ? moved(pass.reuse.shared[at(reuse)], r.l2_bytes)
+                                              : moved(apart, T(own_cache + r.llc_bytes));
+  const MovedRatio<T> l2 = r.rop_through_l2 ? moved(apart, own_cache) : MovedRatio<T>{T(0.0), T(0.0)};
   model.dram.read[i] = dram.read;
   model.dram.write[i] = dram.write;
-  model.l2.read[i] = larger(l2.read, through_l2 ? dram.read : T(0.0));
-  model.l2.write[i] = larger(l2.write, through_l2 ? dram.write : T(0.0));
+  model.l2.read[i] = larger(l2.read, r.rop_through_l2 ? dram.read : T(0.0));
+  model.l2.write[i] = larger(l2.write, r.rop_through_l2 ? dram.write : T(0.0));
+}
+
+constexpr bool draws(PassKind kind) { return kind == PassKind::draw || kind == PassKind::full_screen; }
+
+/// A screen tile is halved until the color of its pixels fits.
+template <class T>
+double screen_tile_px(const PassWork& pass, const GpuRates<T>& r) {
+  constexpr double kSmallestPx = 16.0;
+  double px = r.tile_px, px_bytes = 0.0;
+  for (const ColorTargetWork& target : pass.color_targets)
+    px_bytes += static_cast<double>(target.samples) * static_cast<double>(info(target.format).bytes);
+  while (px > kSmallestPx && r.tile_memory_bytes < T(px * px_bytes)) px /= 2.0;
+  return px;
+}
+
+/// GPUs with tile memory: what a pass draws on is loaded where it goes on with older contents, and stored
+/// where somebody needs it; a tile that the pass does not touch is stored if it was cleared. A resolve of
+/// what was just drawn reads tile memory.
+template <class T>
+void model_tile_memory(const PassShape& shape, const PassWork& pass, const GpuRates<T>& r,
+                       TrafficModel<T>& model) {
+  model.tile_px = screen_tile_px(pass, r);
+  for (const Stream stream : {Stream::color, Stream::depth}) {
+    const std::size_t i = at(stream);
+    model.l2.read[i] = model.l2.write[i] = T(0.0);
+    if (draws(pass.kind)) model.dram.read[i] = model.dram.write[i] = T(0.0);
+    if (pass.source_in_tile) model.dram.read[i] = T(0.0);
+  }
+  if (!draws(pass.kind) || pass.chunks.empty()) return;
+  const auto chunks = static_cast<double>(pass.chunks.size());
+  const double all_px = static_cast<double>(pass.width_px) * pass.height_px;
+  const auto touched_px = [&](std::uint64_t tiles, double targets) {
+    return std::min(all_px, kTilePixels * static_cast<double>(tiles) / targets);
+  };
+  const auto add = [&](Stream stream, double touched, bool cleared, bool loaded, bool kept, double px_bytes,
+                       const T& read_ratio, const T& write_ratio) {
+    if (loaded && !cleared) model.tile_chunk.read[at(stream)] += touched * px_bytes / chunks * read_ratio;
+    if (kept)
+      model.tile_chunk.write[at(stream)] += (cleared ? all_px : touched) * px_bytes / chunks * write_ratio;
+  };
+  const auto targets = static_cast<double>(pass.color_targets.size());
+  for (const ColorTargetWork& t : pass.color_targets) {
+    const auto bytes = static_cast<double>(info(t.format).bytes);
+    const auto ratio = [&](const ColorMix& mix) {
+      return t.samples > 1 ? T(multisample_ratio(mix, t.samples, bytes, r)) : r.color_delta_ratio;
+    };
+    add(Stream::color, touched_px(shape.sum.crop.first_touched_tiles, targets), pass.color_cleared_before,
+        t.loaded, t.kept, t.samples * bytes, ratio(shape.color_read), ratio(shape.color_write));
+  }
+  if (pass.depth_format == Format::none) return;
+  const double tile = shape.depth_tile_bytes;
+  const bool changed = pass.depth_cleared_before || shape.sum.zrop.written_samples > 0;
+  add(Stream::depth, touched_px(shape.sum.zrop.first_touched_tiles, 1.0), pass.depth_cleared_before,
+      pass.depth_loaded, pass.depth_kept && changed, tile / kTilePixels,
+      depth_kept_ratio(shape.depth_read, pass.depth_samples, tile, T(tile), r),
+      depth_kept_ratio(shape.depth_write, pass.depth_samples, tile, T(tile), r));
 }
 
 template <class T>
@@ -100,8 +194,9 @@ TrafficModel<T> model_traffic(const PassShape& shape, const PassWork& pass, cons
   model.dram.read.fill(T(1.0));
   model.dram.write.fill(T(1.0));
   model.l2 = model.dram;
-  model_rop(pass, ReuseStream::color, rates, model);
-  model_rop(pass, ReuseStream::depth, rates, model);
+  model_rop(shape, pass, ReuseStream::color, rates, model);
+  model_rop(shape, pass, ReuseStream::depth, rates, model);
+  if (rates.tile_based) model_tile_memory(shape, pass, rates, model);
   const auto& in_l2 = rates.rop_through_l2 && !rates.tile_based ? pass.reuse.shared : pass.reuse.apart;
   const auto set = [&](Stream stream, ReuseStream reuse) {
     const MovedRatio<T> moved = moved_by(in_l2[at(reuse)], rates.l2_bytes, false);
@@ -115,16 +210,6 @@ TrafficModel<T> model_traffic(const PassShape& shape, const PassWork& pass, cons
   model.l1_fill = moved_by(pass.reuse.texture_l1, rates.l1_bytes, false).read;
   model.l2.read[at(Stream::texture)] = model.l1_fill;
   model.dram.read[at(Stream::texture)] = smaller(model.dram.read[at(Stream::texture)], model.l1_fill);
-  T color_scale(1.0);
-  if (rates.msaa_color_compression && shape.color_samples > 1.0)
-    color_scale = T(shape.uncompressed_ratio + (1.0 - shape.uncompressed_ratio) / shape.color_samples);
-  for (std::array<T, kStreamCount>* moved :
-       {&model.dram.read, &model.dram.write, &model.l2.read, &model.l2.write})
-    (*moved)[at(Stream::color)] *= color_scale;
-  for (std::array<T, kStreamCount>* moved : {&model.dram.read, &model.dram.write}) {
-    (*moved)[at(Stream::color)] *= rates.color_traffic_ratio;
-    (*moved)[at(Stream::depth)] *= rates.depth_traffic_ratio;
-  }
   return model;
 }
 
@@ -141,8 +226,16 @@ struct ChunkTraffic {
   T storage_read_bytes{0.0};
 };
 
-/// Vertices that binning writes and the tiles read back.
-inline double binned_bytes(const PassCounters& c) { return 4.0 * static_cast<double>(c.vs.output_scalars); }
+/// What binning writes and the tiles read back: vertices once, as L2 keeps what neighboring tiles share, and
+/// an entry for each triangle in each tile's list. A triangle of one 8x8 tile lies in one tile; of larger
+/// ones, as many 8x8 tiles as fit share an entry.
+inline double binned_bytes(const PassCounters& c, double tile_px) {
+  constexpr double kEntryBytes = 8.0;
+  const auto drawn = static_cast<double>(c.setup.out_primitives);
+  const double further = std::max(0.0, static_cast<double>(c.raster.visited_tiles) - drawn);
+  return 4.0 * static_cast<double>(c.vs.output_scalars) +
+         kEntryBytes * (drawn + further * kTilePixels / tile_px);
+}
 
 template <class T>
 ChunkTraffic<T> chunk_traffic(const PassCounters& c, const TrafficModel<T>& model, const GpuRates<T>& rates) {
@@ -162,8 +255,9 @@ ChunkTraffic<T> chunk_traffic(const PassCounters& c, const TrafficModel<T>& mode
     traffic.l2_bytes += T(2.0 * ring);
   }
   if (rates.tile_based) {
-    traffic.dram.write[at(Stream::other)] += binned_bytes(c);
-    traffic.dram.read[at(Stream::other)] += binned_bytes(c);
+    traffic.dram += model.tile_chunk;
+    traffic.dram.write[at(Stream::other)] += binned_bytes(c, model.tile_px);
+    traffic.dram.read[at(Stream::other)] += binned_bytes(c, model.tile_px);
   }
   return traffic;
 }

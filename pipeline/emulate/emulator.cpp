@@ -47,7 +47,7 @@ class FrameRunner {
         options_.progress(static_cast<double>(position) / static_cast<double>(compiled_.order.size()),
                           pass.name);
       allocate(static_cast<int>(position));
-      PassWork work = describe(graph_, pass, compiled_.barrier_before[position] != 0, cleared_);
+      PassWork work = describe(graph_, compiled_, static_cast<int>(position), cleared_);
       const auto start = std::chrono::steady_clock::now();
       const std::clock_t cpu_start = std::clock();
       run_pass(pass, work);

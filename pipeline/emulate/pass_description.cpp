@@ -6,15 +6,22 @@
 
 namespace hwsim::pipeline {
 
-PassWork describe(const FrameGraph& graph, const Pass& pass, bool barrier, std::span<const char> cleared) {
+PassWork describe(const FrameGraph& graph, const CompiledGraph& compiled, int position,
+                  std::span<const char> cleared) {
+  const auto in_order = static_cast<std::size_t>(position);
+  const Pass& pass = graph.passes()[static_cast<std::size_t>(compiled.order[in_order])];
+  const auto use = [&](ImageId id) { return attachment_use(graph, compiled, position, id); };
   PassWork work;
   work.name = pass.name;
   work.kind = pass.kind;
   work.width_px = pass.width;
   work.height_px = pass.height;
   work.raster_samples = pass.samples;
-  work.barrier_before = barrier;
+  work.barrier_before = compiled.barrier_before[in_order] != 0;
+  work.source_in_tile = resolves_from_tile(graph, compiled, position);
   if (pass.depth) {
+    work.depth_loaded = use(pass.depth).loaded;
+    work.depth_kept = use(pass.depth).kept;
     work.depth_format = graph.image(pass.depth).format;
     work.depth_samples = graph.image(pass.depth).samples;
     work.depth_cleared_before = cleared[static_cast<std::size_t>(pass.depth.index)] != 0;
@@ -27,7 +34,9 @@ PassWork describe(const FrameGraph& graph, const Pass& pass, bool barrier, std::
     for (const DrawBatch& batch : pass.batches)
       blended = blended || (i < batch.state.blend.size() && batch.state.blend[i].enabled);
     const bool every_layer = pass.kind != PassKind::draw && pass.kind != PassKind::full_screen;
-    work.color_targets.push_back({desc.format, desc.samples * (every_layer ? desc.layers : 1), blended});
+    const bool covers = pass.kind != PassKind::draw && !blended;  // what was there does not matter
+    work.color_targets.push_back({desc.format, desc.samples * (every_layer ? desc.layers : 1), blended,
+                                  !covers && use(written[i]).loaded, use(written[i]).kept});
     work.color_cleared_before =
         work.color_cleared_before && cleared[static_cast<std::size_t>(written[i].index)] != 0;
   }

@@ -10,7 +10,8 @@
 namespace hwsim::pipeline {
 
 /// `cleared`, by ImageId: nothing was drawn into the image since its clear.
-PassWork describe(const FrameGraph& graph, const Pass& pass, bool barrier, std::span<const char> cleared);
+PassWork describe(const FrameGraph& graph, const CompiledGraph& compiled, int position,
+                  std::span<const char> cleared);
 
 /// Words, state changes and draws of the pass's commands; a draw's count where its triangles do.
 void count_commands(const FrameGraph& graph, const Pass& pass, const PassContext& c, bool barrier,

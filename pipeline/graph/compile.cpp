@@ -110,7 +110,57 @@ void sum_memory(const FrameGraph& graph, CompiledGraph& compiled) {
   compiled.peak_bytes = *std::max_element(live.begin(), live.end());
 }
 
+enum class Use { none, contents, overwritten };
+
+Use use_of(const FrameGraph& graph, const Pass& pass, ImageId image) {
+  const Access a = access(graph, pass);
+  const auto has = [&](const std::vector<int>& list) {
+    return std::find(list.begin(), list.end(), image.index) != list.end();
+  };
+  if (has(a.reads)) return Use::contents;
+  if (!has(a.writes)) return Use::none;
+  return overwrites(pass.kind) ? Use::overwritten : Use::contents;
+}
+
+const Pass& pass_at(const FrameGraph& graph, const CompiledGraph& compiled, int position) {
+  return graph.passes()[static_cast<std::size_t>(compiled.order[static_cast<std::size_t>(position)])];
+}
+
+bool draws(const Pass& pass) { return pass.kind == PassKind::draw || pass.kind == PassKind::full_screen; }
+
 }  // namespace
+
+bool resolves_from_tile(const FrameGraph& graph, const CompiledGraph& compiled, int position) {
+  const Pass& pass = pass_at(graph, compiled, position);
+  if (pass.kind != PassKind::resolve || position == 0) return false;
+  const Pass& before = pass_at(graph, compiled, position - 1);
+  const bool color = std::find(before.color.begin(), before.color.end(), pass.source) != before.color.end();
+  return draws(before) && (color || before.depth == pass.source);
+}
+
+AttachmentUse attachment_use(const FrameGraph& graph, const CompiledGraph& compiled, int position,
+                             ImageId image) {
+  AttachmentUse result;
+  result.loaded = graph.contents(image) != nullptr;
+  for (int p = position - 1; p >= 0; --p) {
+    const Pass& pass = pass_at(graph, compiled, p);
+    if (use_of(graph, pass, image) == Use::none) continue;
+    result.loaded = pass.kind != PassKind::clear;
+    break;
+  }
+  result.kept = graph.output() == image;
+  const auto end = static_cast<int>(compiled.order.size());
+  for (int p = position + 1; p < end; ++p) {
+    const Pass& pass = pass_at(graph, compiled, p);
+    const bool from_tile =
+        p == position + 1 && pass.source == image && resolves_from_tile(graph, compiled, p);
+    const Use use = from_tile ? Use::none : use_of(graph, pass, image);
+    if (use == Use::none) continue;
+    result.kept = use == Use::contents;
+    break;
+  }
+  return result;
+}
 
 CompiledGraph compile(const FrameGraph& graph, const GpuFeatures& features,
                       const FunctionalConfig& functional) {

@@ -189,6 +189,17 @@ struct CompiledGraph {
   std::uint64_t allocated_bytes = 0;  ///< sum over all that are used, without reuse of memory
 };
 
+/// What a GPU with tile memory has to do for an attachment of a pass.
+struct AttachmentUse {
+  bool loaded = false;  ///< an earlier pass left contents, and not by a clear
+  bool kept = false;    ///< a later pass needs them, other than a resolve just after this one; or the display
+};
+AttachmentUse attachment_use(const FrameGraph& graph, const CompiledGraph& compiled, int position,
+                             ImageId image);
+
+/// The pass at `position` resolves an image that the one just before it drew.
+bool resolves_from_tile(const FrameGraph& graph, const CompiledGraph& compiled, int position);
+
 /// Throws InputError with every violation found (codes G0xx), as a driver's debug layer reports them: format
 /// and sample-count mismatches, feedback loops, images read before anything wrote them, multisampled images
 /// presented or filtered without a resolve, features that this GPU lacks.

@@ -107,6 +107,7 @@ std::vector<PassWork> single_path_passes() {
   for (PassCounters& c : memory.chunks) {
     PassCounters only;
     only.mem = c.mem;
+    only.zrop.read_four_plane_tiles = only.zrop.write_four_plane_tiles = 90;
     c = only;
   }
   PassWork textures = memory;
@@ -125,6 +126,11 @@ std::vector<PassWork> single_path_passes() {
   }
   passes.push_back(waiting);
   passes.push_back(memory);
+  PassWork binned = pass_of([](PassCounters& c) { c.raster.visited_tiles = 99'999; }, Format::rgba32_float);
+  passes.push_back(binned);
+  PassWork color = memory;
+  color.color_targets = {{Format::rgba8_unorm, 1, false}};
+  passes.push_back(color);
   return passes;
 }
 
@@ -150,10 +156,16 @@ TEST(Keys, EachOneMovesSomePassOfSomeGpu) {
   GpuConfig slow_l2 = on_chip;
   slow_l2.l2_bytes_per_clk = 5;
   slow_l2.l1_fill_bytes_per_core_clk = 0.1;
+  slow_l2.color_delta_ratio = 0.9;
+  slow_l2.depth_plane_slots = 3;
+  GpuConfig tiler = on_chip;
+  tiler.tile_based = true;
+  tiler.dram_bandwidth_gb_s = 1;
+  tiler.tile_memory_kib = 3;
   for (const KeyInfo& info : gpu_keys()) {
     if (!info.has(kRate) && !info.has(kCost)) continue;
     bool moves = false;
-    for (const GpuConfig& base : {on_chip, own_caches, slow_l2})
+    for (const GpuConfig& base : {on_chip, own_caches, slow_l2, tiler})
       for (const Engine engine : {Engine::roofline, Engine::queue}) {
         GpuConfig gpu = base;
         for (const Key& key : keys_of(gpu))

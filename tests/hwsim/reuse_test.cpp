@@ -72,6 +72,9 @@ TEST(Reuse, TilesComeWholeOrInPartAndLeaveWithWhatWasWritten) {
   EXPECT_EQ(curve.write_bytes[1], 512u + 512u + 10u);       // 2 KiB hold all: tile 2 stays capped
   EXPECT_EQ(curve.read_bytes[0], 16u);
   EXPECT_EQ(curve.first_read_bytes[0], 16u);
+  EXPECT_EQ(curve.write_stays[0], 4u);  // 1, 2, 3 and 2 again
+  EXPECT_EQ(curve.write_stays[1], 3u);
+  EXPECT_EQ(curve.read_stays[0], 1u);
 }
 
 TEST(Reuse, StreamsThatShareACachePushEachOtherOut) {

@@ -210,30 +210,6 @@ TEST(Dram, StreamsWithoutReuseDistancesMoveAllThatTheyAskFor) {
                    10'000.0);
 }
 
-TEST(Dram, CompressiblePixelsMoveOneSample) {
-  PassWork pass = msaa_fill(1024, 768);
-  for (PassCounters& c : pass.chunks) c.mem.color_write_bytes = 4096 * 4;
-  GpuConfig gpu = sample_gpu();
-  gpu.color_traffic_ratio = 0.5;
-  const double all = 4096.0 * 4 * kManyChunks;
-  EXPECT_DOUBLE_EQ(time_one(pass, gpu).dram_bytes.total_write(), 0.5 * all * (0.25 + 0.75 / 4));
-  gpu.msaa_color_compression = false;
-  EXPECT_DOUBLE_EQ(time_one(pass, gpu).dram_bytes.total_write(), 0.5 * all);
-}
-
-TEST(Dram, TileBasedGpusMoveEachTileOnceAndBinTheirVertices) {
-  GpuConfig gpu = sample_gpu();
-  gpu.tile_based = true;
-  gpu.l2_size_kib = 1.0;
-  PassWork pass = color_write_pass(0.4);
-  for (PassCounters& c : pass.chunks) c.vs.output_scalars = 10;
-  const FrameTiming t = time_one(pass, gpu);
-  EXPECT_NEAR(t.dram_bytes.write[static_cast<std::size_t>(Stream::color)], 100 * 25'600 * 0.4, 1.0);
-  EXPECT_DOUBLE_EQ(t.dram_bytes.write[static_cast<std::size_t>(Stream::other)], 100 * 40.0);
-  EXPECT_DOUBLE_EQ(t.dram_bytes.read[static_cast<std::size_t>(Stream::other)], 100 * 40.0);
-  EXPECT_EQ(t.passes[0].busy_ns[static_cast<std::size_t>(Unit::l2)], 0.0);
-}
-
 TEST(Clear, CostsTheTableWhereFastAndEverySampleOtherwise) {
   PassWork pass;
   pass.kind = PassKind::clear;

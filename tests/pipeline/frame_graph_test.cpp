@@ -74,6 +74,41 @@ TEST(FrameGraph, KeepsImagesFromTheirFirstUseToTheirLast) {
   }
 }
 
+TEST(FrameGraph, SaysWhatTileMemoryLoadsAndKeeps) {
+  FrameGraph graph(one_triangle(), 16, 16);
+  const ImageId color = graph.add_image({"color", Format::rgba8_unorm, 16, 16, 4});
+  const ImageId depth = graph.add_image({"depth", Format::d24_unorm_s8, 16, 16, 4});
+  const ImageId resolved = graph.add_image({"resolved", Format::rgba8_unorm, 16, 16, 1});
+  const ImageId out = graph.add_image({"out", Format::rgba8_unorm, 16, 16, 1});
+  graph.add_clear("clear", {color, depth});
+  const auto draw = [&](const char* name) -> Pass& {
+    Pass& pass = graph.add_pass(name, PassKind::draw);
+    pass.samples = 4;
+    pass.color = {color};
+    pass.depth = depth;
+    return pass;
+  };
+  draw("first");
+  draw("second").depth_read_only = true;
+  graph.add_resolve("resolve", color, resolved);
+  add_full_screen(graph, "show", {resolved}, out);
+  graph.set_output(out);
+  const CompiledGraph compiled = compile(graph, {}, {});
+  ASSERT_EQ(compiled.order.size(), 5u);
+  const auto use = [&](int position, ImageId image) {
+    const AttachmentUse u = attachment_use(graph, compiled, position, image);
+    return std::pair(u.loaded, u.kept);
+  };
+  EXPECT_EQ(use(1, color), std::pair(false, true));  // cleared before; the second pass goes on with it
+  EXPECT_EQ(use(1, depth), std::pair(false, true));
+  EXPECT_EQ(use(2, color), std::pair(true, false));  // resolved from tile memory, then nobody needs it
+  EXPECT_EQ(use(2, depth), std::pair(true, false));
+  EXPECT_EQ(use(3, resolved), std::pair(false, true));
+  EXPECT_EQ(use(4, out), std::pair(false, true));  // the display
+  EXPECT_TRUE(resolves_from_tile(graph, compiled, 3));
+  EXPECT_FALSE(resolves_from_tile(graph, compiled, 4));
+}
+
 // The multisampled images of techniques 1.3 at 1280x720.
 TEST(FrameGraph, SumsTheMemoryOfMultisampling) {
   for (const int samples : {2, 4, 8}) {

@@ -112,6 +112,8 @@ DetailedTime detailed_time(const PassWork& pass, const GpuConfig& gpu, const Gpu
     result.time.dram.read[i] *= scale;
     result.time.dram.write[i] *= scale;
   }
+  result.time.dram += machine.memory().flush_bytes();  // once, however much of the pass was simulated
+  result.time.time_ns = std::max(result.time.time_ns, result.time.dram.total() / gpu.dram_bandwidth_gb_s);
   share_stack(result.time);
   return result;
 }

@@ -99,6 +99,12 @@ void MemorySystem::warm_up() {
       l2_.access(sources_[static_cast<std::size_t>(client)]->fresh(), false);
 }
 
+StreamBytesOf<double> MemorySystem::flush_bytes() const {
+  StreamBytesOf<double> bytes;
+  l2_.each_dirty_line([&](std::uint64_t line) { bytes.write[at(owner(line))] += kTextureLineBytes; });
+  return bytes;
+}
+
 double MemorySystem::flush_ns() const {
   return static_cast<double>(l2_.dirty_lines()) * dram_.line_ns() / dram_.channel_count();
 }

@@ -20,6 +20,11 @@ class LineCache {
   };
   Outcome access(std::uint64_t line, bool write);
   std::size_t dirty_lines() const { return dirty_; }
+  template <class Visit>
+  void each_dirty_line(const Visit& visit) const {
+    for (const std::uint64_t tag : tags_)
+      if ((tag & 1) != 0) visit((tag >> 1) - 1);
+  }
   std::size_t lines() const { return sets_ * ways_; }
 
  private:
@@ -44,6 +49,8 @@ class MemorySystem {
   double flush_ns() const;
   const Dram& dram() const { return dram_; }
   const StreamBytesOf<double>& dram_bytes() const { return bytes_; }
+  /// What writing them moves.
+  StreamBytesOf<double> flush_bytes() const;
   double l2_busy_ns() const { return l2_busy_ns_; }
   double l2_free_ns() const { return l2_free_ns_; }
 

@@ -46,7 +46,11 @@ void share_bytes(const PassCounters& c, const TrafficModel<double>& model, const
     to.write[i] = asked.write[i] * ratio.write[i] / n;
   }
   if (r.tile_based) {
-    const double binned = binned_bytes(c) / n;
+    for (std::size_t i = 0; i < kStreamCount; ++i) {
+      chunk.direct.read[i] += model.tile_chunk.read[i] / n;
+      chunk.direct.write[i] += model.tile_chunk.write[i] / n;
+    }
+    const double binned = binned_bytes(c, model.tile_px) / n;
     chunk.direct.read[at(Stream::other)] += binned;
     chunk.direct.write[at(Stream::other)] += binned;
   }

@@ -1,0 +1,241 @@
+// Run time against error of the timing engines: every scene x technique x GPU by roofline, queue and samples
+// of the event-driven engine, against that engine on the whole passes; the gain of each skip of the emulator,
+// and what replays cost.
+//   engine_study OUT_DIR [WIDTHxHEIGHT [SCENE,... [TECHNIQUE,...]]]
+// keeps traces in OUT_DIR/traces, writes OUT_DIR/engines.csv, engines.md, engines.svg and costs.md.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "algos/technique.h"
+#include "hwsim/base/diagnostics.h"
+#include "hwsim/config/gpu_keys.h"
+#include "hwsim/timing/timing.h"
+#include "hwsim/trace_file.h"
+#include "pipeline/emulate/emulator.h"
+#include "pipeline/scene/scene_source.h"
+#include "study_report.h"
+
+namespace hwsim::benchmarks {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kScenes =
+    "sponza_hall,grass,powerplant,dragon,wires,text_page,old_city,foliage,car_body,fur_ball,bamboo,metal,"
+    "grill";
+constexpr const char* kTechniques =
+    "none,ssaa4x,msaa4x,msaa8x,msaa16x,deferred,deferred_simple_complex,sbaa_top,sbaa_merge,agaa,sss_gs,sss_"
+    "cs,"
+    "sss_ppll,wire_aa+msaa4x,fxaa,axaa,smaa,cmaa,mlaa";
+constexpr const char* kGpus[] = {"gtx470", "hd5870", "gtx980", "hd4600", "mali_g78mp20"};
+constexpr double kSamples[] = {0.3, 0.1, 0.03};
+
+struct Options {
+  std::string out;
+  int width = 320, height = 180;
+  std::vector<std::string> scenes, techniques;
+};
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> parts;
+  std::istringstream in(list);
+  for (std::string part; std::getline(in, part, ',');) parts.push_back(part);
+  return parts;
+}
+
+GpuConfig gpu_of(const std::string& id) { return load_gpu(id, {}, {}, HWSIM_SOURCE_DIR "/configs/gpus"); }
+
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+pipeline::FrameGraph frame_of(const std::shared_ptr<const pipeline::Scene>& scene,
+                              const std::string& technique, const GpuConfig& gpu, const Options& o) {
+  algos::FrameRequest request;
+  request.scene = scene;
+  request.width_px = o.width;
+  request.height_px = o.height;
+  request.features = gpu.features;
+  request.functional = gpu.functional;
+  return algos::build_frame(algos::parse_technique(technique), request);
+}
+
+std::shared_ptr<const pipeline::Scene> scene_of(const std::string& name) {
+  return std::make_shared<const pipeline::Scene>(
+      pipeline::open_scene(name, pipeline::default_cache_directory() + "/scenes"));
+}
+
+/// From the cache of the study, or emulated: work does not depend on what the engines vary, so all GPUs get
+/// the trace of one whose features every technique can use.
+WorkTrace trace_of(const std::string& scene, const std::string& technique, const GpuConfig& gpu,
+                   const Options& o) {
+  char name[256];
+  std::snprintf(name, sizeof name, "%s_%s_%dx%d_%016llx.trace", scene.c_str(), technique.c_str(), o.width,
+                o.height, static_cast<unsigned long long>(trace_version()));
+  const fs::path path = fs::path(o.out) / "traces" / name;
+  if (std::ifstream in(path, std::ios::binary); in) {
+    const std::vector<char> bytes((std::istreambuf_iterator<char>(in)), {});
+    DecodedTrace decoded = decode_trace({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    if (decoded.trace) return std::move(*decoded.trace);
+  }
+  pipeline::EmulationOptions options;
+  options.jobs = 2;
+  WorkTrace trace =
+      pipeline::emulate(frame_of(scene_of(scene), technique, gpu, o), gpu.features, gpu.functional, options)
+          .trace;
+  const std::vector<std::uint8_t> bytes = encode_trace(trace);
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  return trace;
+}
+
+/// The shortest of a few runs, for engines that take less than a millisecond.
+StudyRow time_row(const WorkTrace& trace, const GpuConfig& gpu, Engine engine, double sample, int runs) {
+  StudyRow row;
+  row.engine = std::string(engine_name(engine));
+  if (engine == Engine::detailed && sample < 1.0) row.engine += " " + std::to_string(sample).substr(0, 4);
+  row.wall_ms = 1e30;
+  for (int i = 0; i < runs; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    TimingOptions options;
+    options.detailed_sample_ratio = sample;
+    const FrameTiming timing = time_frame(trace, gpu, engine, options);
+    row.wall_ms = std::min(row.wall_ms, milliseconds_since(start));
+    row.time_ms = timing.time_ns * 1e-6;
+    row.overhead_ms = 0.0;
+    for (const PassTiming& pass : timing.passes) row.overhead_ms += pass.overhead_ns * 1e-6;
+    row.dram_mb = (timing.dram_bytes.total_read() + timing.dram_bytes.total_write()) * 1e-6;
+  }
+  return row;
+}
+
+double error_pct(double value, double truth) { return truth > 0.0 ? 100.0 * (value / truth - 1.0) : 0.0; }
+
+void time_point(const WorkTrace& trace, const std::string& scene, const std::string& technique,
+                const GpuConfig& gpu, std::vector<StudyRow>& rows) {
+  std::vector<StudyRow> point = {time_row(trace, gpu, Engine::detailed, 1.0, 1),
+                                 time_row(trace, gpu, Engine::roofline, 1.0, 5),
+                                 time_row(trace, gpu, Engine::queue, 1.0, 5)};
+  for (const double sample : kSamples) point.push_back(time_row(trace, gpu, Engine::detailed, sample, 1));
+  const StudyRow whole = point.front();
+  for (StudyRow& row : point) {
+    row.scene = scene;
+    row.technique = technique;
+    row.gpu = gpu.id;
+    row.time_error_pct = error_pct(row.time_ms - row.overhead_ms, whole.time_ms - whole.overhead_ms);
+    row.byte_error_pct = error_pct(row.dram_mb, whole.dram_mb);
+    row.times_as_fast = whole.wall_ms / row.wall_ms;
+    rows.push_back(row);
+  }
+}
+
+double emulation_ms(const pipeline::FrameGraph& graph, const GpuConfig& gpu,
+                    const pipeline::EmulationOptions& options) {
+  double best = 1e30;
+  for (int i = 0; i < 3; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    pipeline::emulate(graph, gpu.features, gpu.functional, options);
+    best = std::min(best, milliseconds_since(start));
+  }
+  return best;
+}
+
+/// Emulation with each skip off, with all off, and with exact reuse distances, against all skips on.
+void study_skips(const Options& o, std::ostream& out) {
+  const GpuConfig gpu = gpu_of("gtx980");
+  const pipeline::FrameGraph graph = frame_of(scene_of(o.scenes.front()), "msaa4x", gpu, o);
+  pipeline::EmulationOptions options;
+  const double base = emulation_ms(graph, gpu, options);
+  out << "| emulation of " << o.scenes.front() << " msaa4x, " << o.width << "x" << o.height
+      << " | ms, one thread | / all skips on |\n|---|---|---|\n| all skips on | " << base << " | 1 |\n";
+  const auto report = [&](std::string_view name, const pipeline::EmulationOptions& changed) {
+    const double ms = emulation_ms(graph, gpu, changed);
+    out << "| " << name << " | " << ms << " | " << ms / base << " |\n";
+  };
+  pipeline::EmulationOptions none = options;
+  for (const pipeline::SkipInfo& s : pipeline::kSkips) {
+    pipeline::EmulationOptions changed = options;
+    changed.skip.*s.flag = none.skip.*s.flag = false;
+    report("without " + std::string(s.name), changed);
+  }
+  report("without any", none);
+  options.exact_reuse = true;
+  report("reuse distances of all blocks", options);
+}
+
+/// What replays of a cached trace cost.
+void study_replays(const WorkTrace& trace, std::ostream& out) {
+  constexpr int kConfigs = 1000;
+  GpuConfig gpu = gpu_of("gtx980");
+  for (const Engine engine : {Engine::roofline, Engine::queue}) {
+    const auto start = std::chrono::steady_clock::now();
+    double sum = 0.0;
+    for (int i = 0; i < kConfigs; ++i) {
+      gpu.l2_size_kib = 256.0 + i;
+      sum += time_frame(trace, gpu, engine).time_ns;
+    }
+    const double seconds = milliseconds_since(start) * 1e-3;
+    out << "\n1000 configurations by " << engine_name(engine) << ": " << seconds << " s, " << seconds
+        << " ms a frame (mean frame " << sum / kConfigs * 1e-6 << " ms)\n";
+  }
+  const PassCounters all = total(trace);
+  const double fragments =
+      static_cast<double>(all.stats.fragment_shader_invocations + all.stats.compute_shader_invocations);
+  const auto start = std::chrono::steady_clock::now();
+  time_frame(trace, gpu, Engine::detailed);
+  out << "\ndetailed: " << fragments / milliseconds_since(start) << " thousand fragments a second ("
+      << fragments << " fragments)\n";
+}
+
+template <class Write>
+void save(const std::string& path, const Write& write) {
+  std::ofstream out(path);
+  write(out);
+}
+
+int run(const Options& o) {
+  fs::create_directories(fs::path(o.out) / "traces");
+  const GpuConfig features = gpu_of("gtx980");
+  std::vector<GpuConfig> gpus;
+  for (const char* id : kGpus) gpus.push_back(gpu_of(id));
+  std::vector<StudyRow> rows;
+  for (const std::string& scene : o.scenes)
+    for (const std::string& technique : o.techniques) {
+      const WorkTrace trace = trace_of(scene, technique, features, o);
+      for (const GpuConfig& gpu : gpus) time_point(trace, scene, technique, gpu, rows);
+      std::fprintf(stderr, "%s %s\n", scene.c_str(), technique.c_str());
+      save(o.out + "/engines.csv", [&](std::ostream& out) { write_csv(rows, out); });
+    }
+  save(o.out + "/engines.md", [&](std::ostream& out) { write_table(rows, out); });
+  save(o.out + "/engines.svg", [&](std::ostream& out) { write_svg(rows, out); });
+  save(o.out + "/costs.md", [&](std::ostream& out) {
+    study_skips(o, out);
+    study_replays(trace_of(o.scenes.front(), "msaa8x", features, o), out);
+  });
+  for (const char* part : {"/engines.md", "/costs.md"})
+    std::printf("%s\n", (std::ostringstream() << std::ifstream(o.out + part).rdbuf()).str().c_str());
+  return 0;
+}
+
+}  // namespace
+}  // namespace hwsim::benchmarks
+
+int main(int argc, char** argv) try {
+  hwsim::benchmarks::Options o;
+  o.scenes = hwsim::benchmarks::split(argc > 3 ? argv[3] : hwsim::benchmarks::kScenes);
+  o.techniques = hwsim::benchmarks::split(argc > 4 ? argv[4] : hwsim::benchmarks::kTechniques);
+  if (argc < 2 || (argc > 2 && std::sscanf(argv[2], "%dx%d", &o.width, &o.height) != 2)) {
+    std::fprintf(stderr, "usage: engine_study OUT_DIR [WIDTHxHEIGHT [SCENE,... [TECHNIQUE,...]]]\n");
+    return 2;
+  }
+  o.out = argv[1];
+  return hwsim::benchmarks::run(o);
+} catch (const hwsim::InputError& error) {
+  for (const hwsim::Diagnostic& d : error.diagnostics()) std::fprintf(stderr, "%s\n", d.message.c_str());
+  return 3;
+}
