@@ -127,8 +127,7 @@ struct GpuValues {
   T tile_memory_kib{8.0};
 
   T pass_overhead_us{10.0};
-  int queue_depth_chunks = 4;
-  int queue_slices_min = 64;
+  int queue_packets = 64;
   T roofline_exponent{8.0};
 };
 

@@ -214,8 +214,7 @@ void describe_memory(V& v, GpuValues<T>& c) {
         c.dram_row_miss_ns);
   v.key({"dram_row_cycle_ns", 0, 1e4, kNoFlags, "engine detailed: from one opening to the next, a bank"},
         c.dram_row_cycle_ns);
-  v.key({"dram_turn_ns", 0, 1e4, kNoFlags, "engine detailed: a channel changes between reads and writes"},
-        c.dram_turn_ns);
+  v.key({"dram_turn_ns", 0, 1e4, kNoFlags, "a channel changes between reads and writes"}, c.dram_turn_ns);
   v.key({"tile_based", 0, 0, kNoFlags,
          "depth and color of a pass live in tile memory; geometry is binned through DRAM"},
         c.tile_based);
@@ -231,11 +230,9 @@ void describe_model(V& v, GpuValues<T>& c) {
   v.key({"pass_overhead_us", 0, 1e6, kFit | kCost,
          "fixed cost of a pass that waits for an earlier one: drain, launch"},
         c.pass_overhead_us);
-  v.key({"queue_depth_chunks", 1, 1024, kRate, "engine queue: slices of work that wait between two units"},
-        c.queue_depth_chunks);
-  v.key({"queue_slices_min", 1, 4096, kNoFlags,
-         "engine queue: a pass with fewer chunks is cut into as many slices"},
-        c.queue_slices_min);
+  v.key({"queue_packets", 2, 4096, kRate,
+         "subgroups' worth of work that wait between two units; engines queue and detailed"},
+        c.queue_packets);
   v.key({"roofline_exponent", 1, 64, kRate,
          "engine roofline: p of the norm over units; large: only the limiter counts"},
         c.roofline_exponent);

@@ -29,13 +29,14 @@ struct GpuRates {
       blended_px_ns;                               ///< gpus section 0, rule 1: min(raster, export, ROP)
   std::array<T, kRateClassCount> color_sample_ns;  ///< multisample writes, the ROPs alone
   T resolve_sample_ns;
-  T l2_byte_ns, dram_byte_ns;
-  T l2_bytes;  ///< with the last-level cache behind it
+  T l2_byte_ns, dram_byte_ns, dram_turn_ns;
+  T unit_lines;  ///< that a fixed-function unit has on their way
+  T l2_bytes;    ///< with the last-level cache behind it
   T crop_cache_bytes, zrop_cache_bytes, llc_bytes;
   T color_delta_ratio, tile_memory_bytes;
   T clear_color_tile_bytes, clear_depth_tile_bytes;
   T pass_overhead_ns, roofline_exponent;
-  int subgroup_size, queue_depth_chunks, queue_slices_min;
+  int subgroup_size, queue_packets;
   int compression_granule_bytes, msaa_color_block_bytes, depth_plane_slots, tile_px;
   bool vliw;  ///< special functions take a slot of the words
   bool interp_on_alu, crop_compressible_at_pixel_rate, msaa_color_compression, rop_through_l2, tile_based;
@@ -154,6 +155,11 @@ void derive_memory(const GpuValues<T>& c, const T& clk_ns, GpuRates<T>& r) {
   constexpr double kKib = 1024.0;
   r.l2_byte_ns = clk_ns / c.l2_bytes_per_clk;
   r.dram_byte_ns = 1.0 / (c.dram_bandwidth_gb_s * c.dram_efficiency_ratio * (1.0 - c.dram_cpu_share_ratio));
+  r.dram_turn_ns = T(c.dram_turn_ns) / static_cast<double>(c.dram_channels);
+  // They are built to keep DRAM busy: bandwidth x latency, and half as many again.
+  constexpr double kLineBytes = 64.0, kLinesMin = 512.0;
+  r.unit_lines =
+      larger(T(kLinesMin), T(1.5 * c.dram_bandwidth_gb_s * c.dram_latency_cycles * clk_ns / kLineBytes));
   r.l2_bytes = (c.l2_size_kib + c.llc_size_kib) * kKib;
   r.crop_cache_bytes = c.crop_cache_kib * kKib;
   r.zrop_cache_bytes = c.zrop_cache_kib * kKib;
@@ -186,8 +192,7 @@ GpuRates<T> derive_rates(const GpuValues<T>& c) {
   derive_memory(c, clk_ns, r);
   r.pass_overhead_ns = c.pass_overhead_us * 1000.0;
   r.roofline_exponent = c.roofline_exponent;
-  r.queue_depth_chunks = c.queue_depth_chunks;
-  r.queue_slices_min = c.queue_slices_min;
+  r.queue_packets = c.queue_packets;
   return r;
 }
 

@@ -8,8 +8,14 @@ template <class T>
 struct ChunkCost {
   std::array<T, kUnitCount> ns;
   StreamBytesOf<T> dram;
+  double packets = 1.0;
+  T shader_latency_ns{0.0};   ///< from a subgroup's dispatch to its end
+  T resident_packets{0.0};    ///< that the cores hold at once
+  T line_ahead_packets{0.0};  ///< for which fixed-function units have lines on their way
   ChunkCost() { ns.fill(T(0.0)); }
 };
+
+inline constexpr double kDramWriteGroup = 32.0;  ///< lines that a channel writes together
 
 struct IssuedOps {
   double alu = 0.0, sfu = 0.0;
@@ -72,6 +78,25 @@ T resident_subgroups(const PassCounters& c, const GpuRates<T>& r) {
   return smaller(r.subgroups_max, larger(T(1.0), T(r.registers / (registers / lanes * r.subgroup_size))));
 }
 
+/// An unfiltered texel takes the place of a probe, a wide one of several. (Filtered textures are 32-bit.)
+template <class T>
+T fetch_ns(const PassCounters& c, const GpuRates<T>& r) {
+  return (static_cast<double>(c.tex.fetched_32bit_texels) +
+          static_cast<double>(c.tex.fetched_64bit_texels) * r.fetch_64bit_cost +
+          static_cast<double>(c.tex.fetched_128bit_texels) * r.fetch_128bit_cost) *
+         r.bilinear_probe_ns;
+}
+
+template <class T>
+T tex_pipe_ns(const PassCounters& c, const GpuRates<T>& r) {
+  return static_cast<double>(c.tex.bilinear_probes) * r.bilinear_probe_ns + fetch_ns(c, r);
+}
+
+/// Subgroups that fragments, geometry-shader and compute invocations fill, in parts.
+double subgroups_of(const PassCounters& c, int subgroup_size);
+
+/// Packets of a chunk: a subgroup's worth of what there is most of, so that every unit sees the same number.
+double packets_of(const PassCounters& c, int subgroup_size);
 /// Latency of a subgroup's memory request: it waits for the slowest of its lanes, so one line that misses is
 /// enough.
 template <class T>
@@ -88,16 +113,26 @@ T memory_latency_ns(const PassCounters& c, const ChunkTraffic<T>& traffic, const
          beyond_l2 * r.dram_latency_ns;
 }
 
-/// The cores as a set of subgroups that wait most of the time (Little's law): a subgroup lives for its chain
-/// of operations and memory requests, or as long as the pipes need for it alone; a core holds so many at
-/// once.
+/// How long a subgroup stays in a core that is otherwise empty: its chain of operations, or as long as the
+/// pipes need for it alone, and its chain of memory requests.
+template <class T>
+T subgroup_life_ns(const PassCounters& c, const ChunkTraffic<T>& traffic, const T& pipes_ns, double subgroups,
+                   const GpuRates<T>& r) {
+  const double lanes = subgroups * r.subgroup_size;
+  const T alu_chain = (static_cast<double>(c.shader.alu_chain_lane_ops) / lanes) * r.alu_latency_ns;
+  const T memory =
+      (static_cast<double>(c.shader.memory_chain_lane_ops) / lanes) * memory_latency_ns(c, traffic, r);
+  return memory + larger(alu_chain, T(pipes_ns * r.shader_cores / subgroups)) +
+         tex_pipe_ns(c, r) * r.shader_cores / subgroups;
+}
+
+/// The cores as a set of subgroups that wait most of the time (Little's law): a core holds so many at once.
 template <class T>
 T latency_bound_ns(const PassCounters& c, const ChunkTraffic<T>& traffic, const T& pipes_ns,
                    const GpuRates<T>& r) {
-  const T alu_chain = (static_cast<double>(c.shader.alu_chain_lane_ops) / r.subgroup_size) * r.alu_latency_ns;
-  const T memory = (static_cast<double>(c.shader.memory_chain_lane_ops) / r.subgroup_size) *
-                   memory_latency_ns(c, traffic, r);
-  return (memory + larger(alu_chain, T(pipes_ns * r.shader_cores))) /
+  const double subgroups = subgroups_of(c, r.subgroup_size);
+  if (subgroups <= 0.0) return T(0.0);
+  return subgroups * subgroup_life_ns(c, traffic, pipes_ns, subgroups, r) /
          (r.shader_cores * resident_subgroups(c, r));
 }
 
@@ -133,20 +168,6 @@ template <class T>
 T shader_ns(const PassCounters& c, const ChunkTraffic<T>& traffic, const GpuRates<T>& r) {
   const T pipes = shader_pipes(c, r).fullest();
   return larger(pipes, latency_bound_ns(c, traffic, pipes, r));
-}
-
-/// An unfiltered texel takes the place of a probe, a wide one of several. (Filtered textures are 32-bit.)
-template <class T>
-T fetch_ns(const PassCounters& c, const GpuRates<T>& r) {
-  return (static_cast<double>(c.tex.fetched_32bit_texels) +
-          static_cast<double>(c.tex.fetched_64bit_texels) * r.fetch_64bit_cost +
-          static_cast<double>(c.tex.fetched_128bit_texels) * r.fetch_128bit_cost) *
-         r.bilinear_probe_ns;
-}
-
-template <class T>
-T tex_pipe_ns(const PassCounters& c, const GpuRates<T>& r) {
-  return static_cast<double>(c.tex.bilinear_probes) * r.bilinear_probe_ns + fetch_ns(c, r);
 }
 
 template <class T>
@@ -189,6 +210,29 @@ T resolve_ns(const PassCounters& c, const PassWork& pass, const GpuRates<T>& r) 
   return larger(read, T(static_cast<double>(c.resolve.written_pixels) * r.color_px_ns[k]));
 }
 
+/// What lets units run ahead of each other.
+template <class T>
+void set_waiting(const PassCounters& c, const ChunkTraffic<T>& traffic, const GpuRates<T>& r,
+                 ChunkCost<T>& cost) {
+  const double subgroups = subgroups_of(c, r.subgroup_size);
+  if (subgroups > 0.0) {
+    cost.shader_latency_ns = subgroup_life_ns(c, traffic, shader_pipes(c, r).fullest(), subgroups, r);
+    cost.resident_packets = resident_subgroups(c, r) * r.shader_cores * (cost.packets / subgroups);
+  }
+  const T bytes = larger(traffic.l2_bytes, traffic.dram.total());
+  if (bytes > T(0.0)) cost.line_ahead_packets = (r.unit_lines * (kTextureLineBytes * cost.packets)) / bytes;
+}
+
+/// Bytes, and two turns of the bus for each group of writes that has reads around it.
+template <class T>
+T dram_ns(const StreamBytesOf<T>& bytes, const GpuRates<T>& r) {
+  T read(0.0), write(0.0);
+  for (const T& b : bytes.read) read += b;
+  for (const T& b : bytes.write) write += b;
+  const T groups = smaller(T(write / kDramWriteGroup), read) / kTextureLineBytes;
+  return (read + write) * r.dram_byte_ns + 2.0 * groups * r.dram_turn_ns;
+}
+
 template <class T>
 ChunkCost<T> chunk_cost(const PassCounters& c, const PassWork& pass, const TrafficModel<T>& model,
                         const GpuRates<T>& r) {
@@ -208,7 +252,9 @@ ChunkCost<T> chunk_cost(const PassCounters& c, const PassWork& pass, const Traff
   set(Unit::crop, crop_ns(c, pass, r));
   set(Unit::resolve, resolve_ns(c, pass, r));
   set(Unit::l2, traffic.l2_bytes * r.l2_byte_ns);
-  set(Unit::dram, traffic.dram.total() * r.dram_byte_ns);
+  set(Unit::dram, dram_ns(traffic.dram, r));
+  cost.packets = packets_of(c, r.subgroup_size);
+  set_waiting(c, traffic, r, cost);
   return cost;
 }
 

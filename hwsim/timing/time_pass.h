@@ -2,8 +2,8 @@
 // The engines: chunks' costs to the time of a pass. T is double to predict, a Jet to fit.
 #include <cmath>
 
+#include "hwsim/timing/packet_flow.h"
 #include "hwsim/timing/service.h"
-#include "hwsim/timing/tandem_queue.h"
 
 namespace hwsim {
 
@@ -64,17 +64,33 @@ void roofline_time(PassTime<T>& time, const GpuRates<T>& rates) {
   for (std::size_t u = 0; u < kUnitCount; ++u) time.stack_ns[u] = time.time_ns * powers[u] / sum;
 }
 
-/// The queue engine's input: units without work in this pass are bypassed, and a pass of few chunks is cut
-/// into slices, because units work on the parts of a chunk at the same time.
+/// How far a unit may run ahead of the next one that has work: the queue between them, what the cores hold,
+/// and lines on their way.
 template <class T>
-ServiceTable<T> service_table(const std::vector<ChunkCost<T>>& costs, const std::vector<std::size_t>& units,
-                              int slices_min) {
-  const std::size_t slices = (static_cast<std::size_t>(slices_min) + costs.size() - 1) / costs.size();
-  ServiceTable<T> table{units.size(), costs.size() * slices, {}};
-  table.ns.reserve(table.units * table.chunks);
-  for (const ChunkCost<T>& cost : costs)
-    for (std::size_t slice = 0; slice < slices; ++slice)
-      for (const std::size_t u : units) table.ns.push_back(cost.ns[u] / static_cast<double>(slices));
+T room_packets(const ChunkCost<T>& cost, std::size_t unit, std::size_t next, const GpuRates<T>& rates) {
+  T room(rates.queue_packets);
+  const bool leaves_cores = unit == at(Unit::tex) || (unit == at(Unit::shader) && next != at(Unit::tex));
+  if (leaves_cores || unit == at(Unit::shader)) room += cost.resident_packets;
+  if (next >= at(Unit::l2)) room += cost.line_ahead_packets;
+  return room;
+}
+
+/// The queue engine's input: units without work in this pass are bypassed.
+template <class T>
+FlowTable<T> flow_table(const std::vector<ChunkCost<T>>& costs, const std::vector<std::size_t>& units,
+                        const GpuRates<T>& rates) {
+  FlowTable<T> table{units.size(), costs.size(), {}, {}, {}, {}};
+  for (const ChunkCost<T>& cost : costs) {
+    table.packets.push_back(cost.packets);
+    for (std::size_t i = 0; i < units.size(); ++i) {
+      const bool last = i + 1 == units.size();
+      table.ns.push_back(cost.ns[units[i]]);
+      table.room_packets.push_back(last ? T(0.0) : room_packets(cost, units[i], units[i + 1], rates));
+      const bool in_cores = !last && units[i + 1] == at(Unit::tex);
+      const bool leaves_cores = units[i] == at(Unit::tex) || (units[i] == at(Unit::shader) && !in_cores);
+      table.latency_ns.push_back(leaves_cores ? cost.shader_latency_ns : T(0.0));
+    }
+  }
   return table;
 }
 
@@ -84,9 +100,8 @@ void queue_time(PassTime<T>& time, const std::vector<ChunkCost<T>>& costs, const
   for (std::size_t u = 0; u < kUnitCount; ++u)
     if (time.busy_ns[u] > T(0.0)) units.push_back(u);
   if (units.empty()) return;
-  const ServiceTable<T> table = service_table(costs, units, rates.queue_slices_min);
-  const QueueResult<T> result =
-      TandemQueue<T>(table, static_cast<std::size_t>(rates.queue_depth_chunks)).run();
+  const FlowTable<T> table = flow_table(costs, units, rates);
+  const FlowResult<T> result = PacketFlow<T>(table).run();
   time.time_ns = result.makespan_ns;
   for (std::size_t i = 0; i < units.size(); ++i) time.stack_ns[units[i]] = result.critical_ns[i];
 }

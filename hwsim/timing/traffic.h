@@ -56,6 +56,9 @@ PassShape shape_of(const PassWork& pass);
 template <class T>
 struct TrafficModel {
   StreamBytesOf<T> dram, l2;
+  /// Of what was asked for and moves compressed as DRAM sees it, the part that caches before L2 let through:
+  /// behind it L2 decides.
+  StreamBytesOf<T> reaches_l2;
   StreamBytesOf<T> tile_chunk;  ///< tile memory's loads and stores: DRAM bytes of each chunk
   double tile_px = 0.0;         ///< of its screen tiles
   T l1_fill{1.0};               ///< texture bytes beyond L1
@@ -115,21 +118,24 @@ void model_rop(const PassShape& shape, const PassWork& pass, ReuseStream reuse, 
   const std::size_t i = at(color ? Stream::color : Stream::depth);
   const bool cleared = color ? pass.color_cleared_before : pass.depth_cleared_before;
   const T& own_cache = color ? r.crop_cache_bytes : r.zrop_cache_bytes;
-  const auto moved = [&](const MissCurve& curve, const T& cache) {
-    MovedRatio<T> m = moved_by(curve, cache, cleared);
-    const MovedRatio<T> kept = kept_by(shape, pass, reuse, curve, cache, r);
-    m.read *= kept.read;
-    m.write *= kept.write;
-    return m;
+  const auto times = [](const MovedRatio<T>& a, const MovedRatio<T>& b) {
+    return MovedRatio<T>{a.read * b.read, a.write * b.write};
   };
   const MissCurve& apart = pass.reuse.apart[at(reuse)];
-  const MovedRatio<T> dram = r.rop_through_l2 ? moved(pass.reuse.shared[at(reuse)], r.l2_bytes)
-                                              : moved(apart, T(own_cache + r.llc_bytes));
-  const MovedRatio<T> l2 = r.rop_through_l2 ? moved(apart, own_cache) : MovedRatio<T>{T(0.0), T(0.0)};
+  const MissCurve& behind = r.rop_through_l2 ? pass.reuse.shared[at(reuse)] : apart;
+  const T last_cache = r.rop_through_l2 ? r.l2_bytes : T(own_cache + r.llc_bytes);
+  const MovedRatio<T> kept = kept_by(shape, pass, reuse, behind, last_cache, r);
+  const MovedRatio<T> dram = times(moved_by(behind, last_cache, cleared), kept);
   model.dram.read[i] = dram.read;
   model.dram.write[i] = dram.write;
-  model.l2.read[i] = larger(l2.read, r.rop_through_l2 ? dram.read : T(0.0));
-  model.l2.write[i] = larger(l2.write, r.rop_through_l2 ? dram.write : T(0.0));
+  model.l2.read[i] = model.l2.write[i] = T(0.0);
+  if (!r.rop_through_l2) return;
+  const MovedRatio<T> l2 =
+      times(moved_by(apart, own_cache, cleared), kept_by(shape, pass, reuse, apart, own_cache, r));
+  model.l2.read[i] = larger(l2.read, dram.read);
+  model.l2.write[i] = larger(l2.write, dram.write);
+  model.reaches_l2.read[i] = model.l2.read[i] / larger(kept.read, T(1e-9));
+  model.reaches_l2.write[i] = model.l2.write[i] / larger(kept.write, T(1e-9));
 }
 
 constexpr bool draws(PassKind kind) { return kind == PassKind::draw || kind == PassKind::full_screen; }
@@ -193,22 +199,28 @@ TrafficModel<T> model_traffic(const PassShape& shape, const PassWork& pass, cons
   TrafficModel<T> model;
   model.dram.read.fill(T(1.0));
   model.dram.write.fill(T(1.0));
-  model.l2 = model.dram;
+  model.l2 = model.reaches_l2 = model.dram;
   model_rop(shape, pass, ReuseStream::color, rates, model);
   model_rop(shape, pass, ReuseStream::depth, rates, model);
   if (rates.tile_based) model_tile_memory(shape, pass, rates, model);
   const auto& in_l2 = rates.rop_through_l2 && !rates.tile_based ? pass.reuse.shared : pass.reuse.apart;
+  // Lines move whole: accesses to parts of lines ask L2 for more than they use.
   const auto set = [&](Stream stream, ReuseStream reuse) {
-    const MovedRatio<T> moved = moved_by(in_l2[at(reuse)], rates.l2_bytes, false);
-    model.dram.read[at(stream)] = moved.read;
-    model.dram.write[at(stream)] = moved.write;
+    const MissCurve& curve = in_l2[at(reuse)];
+    const MovedRatio<T> moved = moved_by(curve, rates.l2_bytes, false);
+    const MovedRatio<T> lines = moved_by(curve, T(kSmallestCacheBytes), false);
+    const std::size_t i = at(stream);
+    model.dram.read[i] = moved.read;
+    model.dram.write[i] = moved.write;
+    model.l2.read[i] = model.reaches_l2.read[i] = larger(T(1.0), lines.read);
+    model.l2.write[i] = model.reaches_l2.write[i] = larger(T(1.0), lines.write);
   };
   set(Stream::storage, ReuseStream::storage);
   set(Stream::vertex, ReuseStream::geometry);
   set(Stream::index, ReuseStream::geometry);
   set(Stream::texture, ReuseStream::texture);
   model.l1_fill = moved_by(pass.reuse.texture_l1, rates.l1_bytes, false).read;
-  model.l2.read[at(Stream::texture)] = model.l1_fill;
+  model.l2.read[at(Stream::texture)] = model.reaches_l2.read[at(Stream::texture)] = model.l1_fill;
   model.dram.read[at(Stream::texture)] = smaller(model.dram.read[at(Stream::texture)], model.l1_fill);
   return model;
 }
@@ -226,6 +238,10 @@ struct ChunkTraffic {
   T storage_read_bytes{0.0};
 };
 
+/// Rings in memory before and behind geometry shaders, each written and read (gpus section 4).
+inline double ring_bytes(const PassCounters& c, bool gs_on_chip) {
+  return gs_on_chip ? 0.0 : static_cast<double>(c.gs.input_bytes + c.gs.output_bytes);
+}
 /// What binning writes and the tiles read back: vertices once, as L2 keeps what neighboring tiles share, and
 /// an entry for each triangle in each tile's list. A triangle of one 8x8 tile lies in one tile; of larger
 /// ones, as many 8x8 tiles as fit share an entry.
@@ -246,14 +262,12 @@ ChunkTraffic<T> chunk_traffic(const PassCounters& c, const TrafficModel<T>& mode
     traffic.dram.write[i] = asked.write[i] * model.dram.write[i];
     traffic.l2_bytes += asked.read[i] * model.l2.read[i] + asked.write[i] * model.l2.write[i];
   }
-  traffic.storage_read_bytes = T(asked.read[at(Stream::storage)]);
+  traffic.storage_read_bytes = asked.read[at(Stream::storage)] * model.l2.read[at(Stream::storage)];
   traffic.l1_fill_bytes = asked.read[at(Stream::texture)] * model.l1_fill;
-  if (!rates.gs_on_chip) {  // rings in memory before and behind the stage (gpus section 4)
-    const auto ring = static_cast<double>(c.gs.input_bytes + c.gs.output_bytes);
-    traffic.dram.write[at(Stream::other)] += ring;
-    traffic.dram.read[at(Stream::other)] += ring;
-    traffic.l2_bytes += T(2.0 * ring);
-  }
+  const double ring = ring_bytes(c, rates.gs_on_chip);
+  traffic.dram.write[at(Stream::other)] += ring;
+  traffic.dram.read[at(Stream::other)] += ring;
+  traffic.l2_bytes += T(2.0 * ring);
   if (rates.tile_based) {
     traffic.dram += model.tile_chunk;
     traffic.dram.write[at(Stream::other)] += binned_bytes(c, model.tile_px);

@@ -129,7 +129,7 @@ TEST_F(CompareTest, RefusesWhatItCannotCompare) {
   refused("triangle.gltf --zip --vary gpu.l2_size_kib=1,2 --vary gpu.core_clock_mhz=3,4,5", 2, "U019");
   refused("triangle.gltf --vary gpu.l2_size_kb=1,2", 3, "C012");
   refused("triangle.gltf --set gpu.core_clock_mhz=x-1", 3, "C014");
-  refused("triangle.gltf --set gpu.queue_depth_chunks=x0.3", 3, "C013");
+  refused("triangle.gltf --set gpu.queue_packets=x0.3", 3, "C013");
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST(Derivative, OfRatesSumsToMinusOne) {
   double sum = 0.0;
   for (const Sensitivity& s : sensitivities(busy_trace(), gpu, Engine::queue)) {
     if (s.key == "core_clock_mhz" || s.key == "dram_bandwidth_gb_s") sum += s.elasticity;
-    if (s.key == "pass_overhead_us") sum -= s.elasticity;
+    if (s.key == "pass_overhead_us" || s.key == "dram_turn_ns") sum -= s.elasticity;
   }
   EXPECT_NEAR(sum, -1.0, 1e-9);
 }

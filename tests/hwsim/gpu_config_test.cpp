@@ -136,7 +136,7 @@ TEST_F(GpuFiles, WrongTypesAndRangesPointAtTheValue) {
                {"tile_based = 1", "C013", 14},
                {"title = 3", "C013", 9},
                {"crop_efficiency_ratio = 1.5", "C014", 25},
-               {"queue_depth_chunks = 1e9", "C014", 22},
+               {"queue_packets = 1e9", "C014", 17},
                {"core_clock_mhz = { value = 0 }", "C014", 28},
                {"core_clock_mhz = 99999999999999999999", "C011", 18}};
   for (const auto& c : cases) {

@@ -8,13 +8,16 @@ namespace {
 
 constexpr double kLineBytes = 64.0;
 constexpr std::uint64_t kInterleaveLines = 4;  // 256 bytes go to one channel
-constexpr std::size_t kWriteGroup = 32;
+constexpr std::size_t kWriteGroup = 32;        // as kDramWriteGroup of the closed form
 
 }  // namespace
 
 Dram::Dram(const GpuConfig& gpu) {
   const double channels = gpu.dram_channels;
-  line_ns_ = kLineBytes * channels / (gpu.dram_bandwidth_gb_s * (1.0 - gpu.dram_cpu_share_ratio));
+  // The efficiency is what long reads in order reach: refresh, gaps between bank groups and the like. Rows
+  // and turns of the bus come on top.
+  line_ns_ = kLineBytes * channels /
+             (gpu.dram_bandwidth_gb_s * gpu.dram_efficiency_ratio * (1.0 - gpu.dram_cpu_share_ratio));
   row_miss_ns_ = gpu.dram_row_miss_ns;
   row_cycle_ns_ = gpu.dram_row_cycle_ns;
   turn_ns_ = gpu.dram_turn_ns;
@@ -27,10 +30,10 @@ Dram::Dram(const GpuConfig& gpu) {
   for (Channel& channel : channels_) channel.banks.resize(static_cast<std::size_t>(gpu.dram_banks));
 }
 
-void Dram::turn(Channel& channel, bool writing) {
+void Dram::turn(Channel& channel, bool writing, double now_ns) {
   if (channel.writing == writing) return;
   channel.writing = writing;
-  channel.free_ns += turn_ns_;
+  channel.bus.reserve(now_ns, turn_ns_);
   channel.busy_ns += turn_ns_;
 }
 
@@ -39,18 +42,15 @@ void Dram::turn(Channel& channel, bool writing) {
 double Dram::transfer(Channel& channel, std::uint64_t line, double now_ns) {
   const std::uint64_t row = line / lines_a_row_;
   Bank& bank = channel.banks[(row ^ row / channel.banks.size()) % channel.banks.size()];
-  double ready = std::max(now_ns, bank.ready_ns);
-  if (bank.row != row) {
+  double ready = std::max(now_ns, std::min(bank.ready_ns, now_ns + row_miss_ns_));
+  if (std::find(bank.rows.begin(), bank.rows.end(), row) == bank.rows.end()) {
     ++row_misses_;
-    ready = std::max(ready, bank.activated_ns + row_cycle_ns_);
-    bank.activated_ns = ready;
-    bank.row = row;
-    ready += row_miss_ns_;
+    bank.rows[bank.oldest++ % bank.rows.size()] = row;
+    ready = bank.activations.reserve(now_ns, row_cycle_ns_) - row_cycle_ns_ + row_miss_ns_;
+    bank.ready_ns = ready;
   }
-  bank.ready_ns = ready + line_ns_;
-  channel.free_ns = std::max(channel.free_ns, now_ns) + line_ns_;
   channel.busy_ns += line_ns_;
-  return std::max(channel.free_ns, bank.ready_ns);
+  return channel.bus.reserve(ready, line_ns_);
 }
 
 double Dram::access(std::uint64_t line, bool write, double now_ns) {
@@ -58,12 +58,12 @@ double Dram::access(std::uint64_t line, bool write, double now_ns) {
   Channel& channel = channels_[group % channels_.size()];
   const std::uint64_t inside = group / channels_.size() * kInterleaveLines + line % kInterleaveLines;
   if (!write) {
-    turn(channel, false);
+    turn(channel, false, now_ns);
     return transfer(channel, inside, now_ns) + latency_ns_;
   }
   channel.writes.push_back(inside);
   if (channel.writes.size() < kWriteGroup) return now_ns;
-  turn(channel, true);
+  turn(channel, true, now_ns);
   std::sort(channel.writes.begin(), channel.writes.end());
   double done = now_ns;
   for (const std::uint64_t waiting : channel.writes) done = transfer(channel, waiting, now_ns);
@@ -81,7 +81,7 @@ double Dram::busy_ns() const {
 double Dram::free_ns() const {
   double last = 0.0;
   for (const Channel& channel : channels_)
-    last = std::max(last, channel.free_ns + static_cast<double>(channel.writes.size()) * line_ns_);
+    last = std::max(last, channel.bus.last_ns() + static_cast<double>(channel.writes.size()) * line_ns_);
   return last;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 // DRAM as channels of banks with open rows: what the queue engine's one efficiency stands for.
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "hwsim/config/gpu_config.h"
+#include "hwsim/timing/detailed/calendar.h"
 
 namespace hwsim {
 
@@ -21,17 +23,23 @@ class Dram {
 
  private:
   struct Bank {
-    std::uint64_t row = ~std::uint64_t{0};
-    double ready_ns = 0.0, activated_ns = -1e9;
+    /// Rows that requests in the controller's queue are for: it serves all of one row together (first ready,
+    /// first come, first served), so returning to one of these opens none.
+    std::array<std::uint64_t, 4> rows;
+    std::size_t oldest = 0;
+    Bank() { rows.fill(~std::uint64_t{0}); }
+    double ready_ns = 0.0;        ///< of the open row
+    Calendar activations{512.0};  ///< one takes a row cycle
   };
   struct Channel {
-    double free_ns = 0.0, busy_ns = 0.0;
+    Calendar bus{128.0};
+    double busy_ns = 0.0;
     bool writing = false;
     std::vector<std::uint64_t> writes;  ///< waiting: they go in groups, a change of direction costs time
     std::vector<Bank> banks;
   };
   double transfer(Channel& channel, std::uint64_t line, double now_ns);
-  void turn(Channel& channel, bool writing);
+  void turn(Channel& channel, bool writing, double now_ns);
 
   double line_ns_, row_miss_ns_, row_cycle_ns_, turn_ns_, latency_ns_;
   std::uint64_t lines_a_row_;

@@ -7,7 +7,6 @@ namespace hwsim {
 namespace {
 
 constexpr std::size_t kCoreMissesMax = 256;  // lines on their way to a core
-constexpr std::size_t kUnitLinesMax = 512;   // and to the units of the front and the ROPs
 constexpr std::size_t kLinesMin = 16;
 constexpr std::size_t kNoCore = ~std::size_t{0};
 
@@ -43,27 +42,16 @@ const MissCurve& curve_of(const ReuseProfile& reuse, Stream stream) {
   }
 }
 
-/// What caches before L2 let through.
-double reached(const PassWork& pass, Stream stream, const MissCurve& curve, const GpuRates<double>& r) {
-  if (stream == Stream::texture)
-    return moved_ratio(pass.reuse.texture_l1.read_bytes, pass.reuse.texture_l1.requested_read_bytes,
-                       r.l1_bytes);
-  if (stream != Stream::color && stream != Stream::depth) return 1.0;
-  const double own = stream == Stream::color ? r.crop_cache_bytes : r.zrop_cache_bytes;
-  return moved_ratio(curve.write_bytes, curve.requested_write_bytes, own);
-}
-
-std::array<Survival, kStreamCount> survivals(const PassWork& pass, const GpuRates<double>& r) {
-  std::array<Survival, kStreamCount> of;
-  for (std::size_t i = 0; i < kStreamCount; ++i) {
-    const auto stream = static_cast<Stream>(i);
-    const MissCurve& curve = curve_of(pass.reuse, stream);
-    const double before = reached(pass, stream, curve, r);
-    const bool writes = curve.requested_write_bytes > curve.requested_read_bytes;
-    of[i] = writes ? survival(curve.write_bytes, curve.requested_write_bytes, before)
-                   : survival(curve.read_bytes, curve.requested_read_bytes, before);
-  }
-  return of;
+/// Of the requests that reach L2, those beyond each size. First reads of a cleared target are none of DRAM's
+/// business.
+Survival beyond_l2(const PassWork& pass, const MissCurve& curve, Stream stream, bool write, double reached) {
+  if (write) return survival(curve.write_bytes, curve.requested_write_bytes, reached);
+  std::array<std::uint64_t, kCacheSizes> bytes = curve.read_bytes;
+  const bool cleared = (stream == Stream::color && pass.color_cleared_before) ||
+                       (stream == Stream::depth && pass.depth_cleared_before);
+  if (cleared)
+    for (std::size_t k = 0; k < bytes.size(); ++k) bytes[k] -= std::min(bytes[k], curve.first_read_bytes[k]);
+  return survival(bytes, curve.requested_read_bytes, reached);
 }
 
 std::size_t l1_lines(const GpuRates<double>& r) {
@@ -78,14 +66,23 @@ Machine::Machine(const PassWork& pass, const PacketPlan& plan, const GpuConfig& 
       plan_(plan),
       rates_(rates),
       events_max_(events_without_progress_max),
+      unit_lines_max_(static_cast<std::size_t>(rates.unit_lines)),
+      fifo_packets_(static_cast<std::size_t>(rates.queue_packets)),
       memory_(gpu, seed),
       random_(seed ^ 0x5bd1e995),
-      survival_(survivals(pass, rates)),
       l1_survival_(
           survival(pass.reuse.texture_l1.read_bytes, pass.reuse.texture_l1.requested_read_bytes, 1.0)) {
+  for (Ring& ring : front_done_) ring.assign(fifo_packets_, 0.0);
+  leave_done_.assign(fifo_packets_, 0.0);
   const auto cores = static_cast<std::size_t>(rates.shader_cores);
   cores_.reserve(cores);
   for (std::size_t i = 0; i < cores; ++i) cores_.emplace_back(l1_lines(rates), seed + 100 + i);
+  for (std::size_t i = 0; i < kStreamCount; ++i) {
+    const auto stream = static_cast<Stream>(i);
+    const MissCurve& curve = curve_of(pass.reuse, stream);
+    reads_[i] = beyond_l2(pass, curve, stream, false, plan.reaches_l2.read[i]);
+    writes_[i] = beyond_l2(pass, curve, stream, true, plan.reaches_l2.write[i]);
+  }
 }
 
 std::vector<double> Machine::run(std::uint64_t first, std::uint64_t last) {
@@ -120,7 +117,7 @@ bool Machine::enter(std::uint64_t packet) {
   const std::size_t core = shades ? pick_core(chunk) : kNoCore;
   if (shades && core == kNoCore) return false;
   const double ready = front(chunk);
-  const std::size_t slot = entered_ % kFifoPackets;
+  const std::size_t slot = entered_ % fifo_packets_;
   ++entered_;
   if (shades) {
     const double start = std::max(ready, now_ns_);
@@ -138,11 +135,11 @@ bool Machine::enter(std::uint64_t packet) {
 // A unit starts a packet when it has it, is free, and the queue behind it has room: the unit after it has
 // done the packet that came so many before.
 double Machine::front(const ChunkPackets& chunk) {
-  const std::size_t slot = entered_ % kFifoPackets;
+  const std::size_t slot = entered_ % fifo_packets_;
   double ready = 0.0;
   for (std::size_t u = 0; u < kFrontUnits.size(); ++u) {
     double start = ready;
-    if (entered_ >= kFifoPackets) start = std::max(start, front_done_[u + 1][slot]);
+    if (entered_ >= fifo_packets_) start = std::max(start, front_done_[u + 1][slot]);
     start = std::max(start, front_free_[u]);
     if (kFrontUnits[u] == Unit::ia)
       start = move(chunk, {Stream::vertex, Stream::index, Stream::constant}, start, ia_lines_);
@@ -242,8 +239,7 @@ double Machine::fetch_line(Core& core, Stream stream, double now) {
     start = std::max(start, core.misses.front());
     core.misses.pop_front();
   }
-  const double arrives =
-      memory_.access(MemoryClient::reads, stream, survival_[at(stream)], false, false, start);
+  const double arrives = memory_.access(MemoryClient::reads, stream, reads_[at(stream)], false, false, start);
   core.misses.push_back(arrives);
   return arrives;
 }
@@ -263,8 +259,8 @@ void Machine::release(std::uint32_t index) {
 
 // A subgroup holds its place until the queue to the ROPs has room.
 Machine::Leaving Machine::finish(const ChunkPackets& chunk, double now) {
-  const std::size_t slot = finished_ % kFifoPackets;
-  const double accepted = finished_ >= kFifoPackets ? std::max(now, leave_done_[slot]) : now;
+  const std::size_t slot = finished_ % fifo_packets_;
+  const double accepted = finished_ >= fifo_packets_ ? std::max(now, leave_done_[slot]) : now;
   ++finished_;
   double start = std::max(accepted, crop_free_);
   start = move(chunk, {Stream::color, Stream::other}, start, color_lines_);
@@ -299,15 +295,16 @@ double Machine::move_lines(double bytes, Stream stream, bool write, bool bypass,
     return all;
   }();
   if (bytes <= 0.0) return now;
+  const Survival& of_l2 = (write ? writes_ : reads_)[at(stream)];
   const double lines = whole(bytes / kTextureLineBytes);
   for (double i = 0.0; i < lines; i += 1.0) {
     while (!outstanding.empty() && outstanding.front() <= now) outstanding.pop_front();
-    if (outstanding.size() >= kUnitLinesMax) {
+    if (outstanding.size() >= unit_lines_max_) {
       now = std::max(now, outstanding.front());
       outstanding.pop_front();
     }
-    outstanding.push_back(memory_.access(client_of(stream), stream,
-                                         bypass ? kAlwaysNew : survival_[at(stream)], write, bypass, now));
+    outstanding.push_back(
+        memory_.access(client_of(stream), stream, bypass ? kAlwaysNew : of_l2, write, bypass, now));
   }
   return now;
 }

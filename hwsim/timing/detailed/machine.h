@@ -37,7 +37,6 @@ class Machine {
   const MemorySystem& memory() const { return memory_; }
 
  private:
-  static constexpr std::size_t kFifoPackets = 64;  // between two units
   enum class Step : unsigned char { work, fetch, leave, release };
   struct Event {
     double ns;
@@ -62,7 +61,7 @@ class Machine {
   struct Leaving {
     double accepted_ns, done_ns;
   };
-  using Ring = std::array<double, kFifoPackets>;
+  using Ring = std::vector<double>;
 
   bool enter(std::uint64_t packet);
   double front(const ChunkPackets& chunk);
@@ -89,9 +88,11 @@ class Machine {
   const PacketPlan& plan_;
   const GpuRates<double>& rates_;
   std::uint64_t events_max_, events_since_progress_ = 0;
+  std::size_t unit_lines_max_;
+  std::size_t fifo_packets_;  ///< between two units
   MemorySystem memory_;
   Random random_;
-  std::array<Survival, kStreamCount> survival_;
+  std::array<Survival, kStreamCount> reads_, writes_;
   Survival l1_survival_;
 
   std::array<double, kFrontUnits.size()> front_free_{};

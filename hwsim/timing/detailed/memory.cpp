@@ -77,9 +77,8 @@ double MemorySystem::access(MemoryClient client, Stream stream, const Survival& 
     move(stream, write);
     return dram_.access(line, write, now_ns);
   }
-  l2_free_ns_ = std::max(l2_free_ns_, now_ns) + l2_line_ns_;
   l2_busy_ns_ += l2_line_ns_;
-  const double at_l2 = l2_free_ns_ + l2_latency_ns_;
+  const double at_l2 = l2_calendar_.reserve(now_ns, l2_line_ns_) + l2_latency_ns_;
   const LineCache::Outcome outcome = l2_.access(line, write);
   if (outcome.writes_back) {
     move(owner(outcome.left_line), true);

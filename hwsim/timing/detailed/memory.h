@@ -52,11 +52,12 @@ class MemorySystem {
   /// What writing them moves.
   StreamBytesOf<double> flush_bytes() const;
   double l2_busy_ns() const { return l2_busy_ns_; }
-  double l2_free_ns() const { return l2_free_ns_; }
+  double l2_free_ns() const { return l2_calendar_.last_ns(); }
 
  private:
   double l2_line_ns_, l2_latency_ns_, dram_latency_ns_;
-  double l2_free_ns_ = 0.0, l2_busy_ns_ = 0.0;
+  double l2_busy_ns_ = 0.0;
+  Calendar l2_calendar_{64.0};
   bool warm_ = false;
   LineCache l2_;
   Dram dram_;

@@ -6,14 +6,8 @@
 namespace hwsim {
 namespace {
 
-constexpr double kPacketNsMax = 64.0;  // of the slowest unit that all packets go through
-
-double lanes_of(const PassCounters& c) {
-  return static_cast<double>(c.stats.fragment_shader_invocations + c.stats.compute_shader_invocations);
-}
-
 SubgroupWork subgroup_work(const PassCounters& c, const ShaderPipes<double>& pipes, double tex_ns,
-                           const TrafficModel<double>&, const GpuRates<double>& r, double subgroups) {
+                           const TrafficModel<double>& model, const GpuRates<double>& r, double subgroups) {
   const double of_core = r.shader_cores / subgroups;
   SubgroupWork work;
   work.alu_ns = pipes.alu * of_core;
@@ -21,11 +15,12 @@ SubgroupWork subgroup_work(const PassCounters& c, const ShaderPipes<double>& pip
   work.memory_pipe_ns = std::max(pipes.words, pipes.group) * of_core;
   work.atomic_ns = pipes.atomics / subgroups;  // one unit of the chip
   work.tex_ns = tex_ns * of_core;
-  const double lanes = std::max(1.0, lanes_of(c));
+  const double lanes = std::max(1.0, subgroups_of(c, r.subgroup_size) * r.subgroup_size);
   work.alu_chain_ns = static_cast<double>(c.shader.alu_chain_lane_ops) / lanes * r.alu_latency_ns;
   work.memory_phases = static_cast<double>(c.shader.memory_chain_lane_ops) / lanes;
   work.l1_lines = static_cast<double>(c.mem.texture_read_bytes) / kTextureLineBytes / subgroups;
-  work.storage_lines = static_cast<double>(c.mem.storage_read_bytes) / kTextureLineBytes / subgroups;
+  work.storage_lines = static_cast<double>(c.mem.storage_read_bytes) * model.l2.read[at(Stream::storage)] /
+                       kTextureLineBytes / subgroups;
   return work;
 }
 
@@ -54,6 +49,8 @@ void share_bytes(const PassCounters& c, const TrafficModel<double>& model, const
     chunk.direct.read[at(Stream::other)] += binned;
     chunk.direct.write[at(Stream::other)] += binned;
   }
+  chunk.l2.read[at(Stream::other)] += ring_bytes(c, r.gs_on_chip) / n;
+  chunk.l2.write[at(Stream::other)] += ring_bytes(c, r.gs_on_chip) / n;
   chunk.l2.read[at(Stream::texture)] = 0.0;  // L1 decides which lines L2 is asked for
   chunk.l2.read[at(Stream::storage)] = 0.0;  // asked for by the subgroups
 }
@@ -69,17 +66,13 @@ const ChunkPackets& PacketPlan::chunk_of(std::uint64_t packet) const {
 PacketPlan plan_packets(const PassWork& pass, const GpuRates<double>& rates) {
   const TrafficModel<double> model = model_traffic(shape_of(pass), pass, rates);
   PacketPlan plan;
+  plan.reaches_l2 = model.reaches_l2;
   for (const PassCounters& c : pass.chunks) {
     const ChunkCost<double> cost = chunk_cost(c, pass, model, rates);
     ChunkPackets chunk;
-    chunk.subgroups = std::ceil(lanes_of(c) / rates.subgroup_size);
-    double slowest = 0.0;
-    for (const Unit u : {Unit::fe, Unit::ia, Unit::vs, Unit::setup, Unit::raster, Unit::hiz, Unit::zrop,
-                         Unit::crop, Unit::resolve, Unit::dram})
-      slowest = std::max(slowest, cost.ns[at(u)]);
+    chunk.subgroups = std::ceil(subgroups_of(c, rates.subgroup_size));
     chunk.first = plan.packets;
-    chunk.count =
-        static_cast<std::uint64_t>(std::max({1.0, chunk.subgroups, std::ceil(slowest / kPacketNsMax)}));
+    chunk.count = static_cast<std::uint64_t>(cost.packets);
     plan.packets += chunk.count;
     for (std::size_t u = 0; u < kUnitCount; ++u)
       chunk.service_ns[u] = cost.ns[u] / static_cast<double>(chunk.count);

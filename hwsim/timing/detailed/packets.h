@@ -29,6 +29,8 @@ struct ChunkPackets {
 
 struct PacketPlan {
   std::vector<ChunkPackets> chunks;
+  /// The part of what was asked for, compressed as DRAM sees it, that the caches before L2 let through.
+  StreamBytesOf<double> reaches_l2;
   std::uint64_t packets = 0;
   const ChunkPackets& chunk_of(std::uint64_t packet) const;
 };
