@@ -30,6 +30,7 @@ struct Options {
   float gloss_reference;
   int emulate, accumulate;
   bool centroid, dither;
+  int plane_path;
 };
 
 Options read_options(const Parameters& parameters) {
@@ -58,7 +59,8 @@ Options read_options(const Parameters& parameters) {
           index("emulate"),
           index("accumulate"),
           index("centroid") != 0,
-          index("a2c_dither") != 0};
+          index("a2c_dither") != 0,
+          index("plane_path")};
 }
 
 /// Builds the frame pass by pass.
@@ -68,7 +70,8 @@ class Builder {
       : graph_(request.scene, request.width_px, request.height_px),
         o_(options),
         parts_(prepare_frame(graph_, request)),
-        pattern_(multicast_layers(request, o_.samples, o_.emulate)) {
+        pattern_(multicast_layers(request, o_.samples, o_.emulate)),
+        features_(request.features) {
     layers_ = std::max(1, static_cast<int>(pattern_.viewports.size()));
     raster_samples_ = o_.samples / layers_;
     code_bits_ = o_.aggregates == 1 ? 0 : o_.aggregates == 2 ? 1 : 2;
@@ -219,9 +222,15 @@ class Builder {
     u->separation = o_.separation;
     u->unit_mean_normal = o_.unit_mean;
     u->squared_sums = o_.squared_sums;
+    // A layer's planes are its own: layers that stand for one pixel would have to be matched.
+    enum PlanePath { automatic, on, off };
+    const bool planes = layers_ == 1 && (o_.plane_path == on ||
+                                         (o_.plane_path == automatic && features_.compressed_depth_read));
+    u->reads_planes = planes;
     Pass& pass = add_compute("define", agaa_define_program(), std::move(u));
     pass.sampled = {depth_, normal_};
     pass.targets = {codes_};
+    if (planes) pass.depth_planes = depth_;
   }
 
   AggregateUniforms aggregate_uniforms(const AggregateTargets& targets) const {
@@ -375,6 +384,7 @@ class Builder {
   const Options& o_;
   FrameParts parts_;
   MulticastPattern pattern_;
+  GpuFeatures features_;
   int layers_ = 1, raster_samples_ = 8, code_bits_ = 1, color_samples_ = 2;
   bool atomic_ = false, perspective_ = true;
   float pixel_m_ = 0.0f;  ///< a pixel's height, at distance 1 if it grows with it
@@ -393,7 +403,7 @@ FrameGraph build_agaa(const FrameRequest& request, const Parameters& parameters)
 }
 
 constexpr ParameterInfo kParameters[] = {
-    {"c", 1, 0, 3, "aggregates a pixel", "1|2|3|4"},
+    {"c", 1, 0, 3, "aggregates a pixel; three take the memory of four where they are color samples", "1|2|3|4"},
     {"msaa", 1, 0, 3, "visibility samples a pixel", "4|8|16|32"},
     {"k", 0.1, 0.001, 10, "length at which positions weigh as much as normals, m"},
     {"t", 0.02, 0, 1, "distance that keeps aggregates apart"},
@@ -419,6 +429,9 @@ constexpr ParameterInfo kParameters[] = {
     {"accumulate", 0, 0, 2, "aggregates add up by blending into mixed samples, or by atomics",
      "auto|blend|atomics"},
     {"centroid", 1, 0, 1, "attributes inside the primitive at partly covered pixels", "off|on"},
+    {"plane_path", 0, 0, 2,
+     "native samples: depth tiles that are compressed to few planes take those for aggregates",
+     "auto|on|off"},
     {"a2c_dither", 1, 0, 1, "alpha to coverage rounds by 2x2 pixels", "off|on"},
 };
 

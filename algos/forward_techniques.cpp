@@ -63,6 +63,30 @@ void build_multicast(FrameGraph& graph, const FrameParts& parts, int samples, bo
                   std::make_shared<MergeUniforms>(MergeUniforms{samples}));
 }
 
+/// Samples and positions of coverage (techniques 1.6).
+struct CoverageMode {
+  int samples, coverage_samples;
+};
+
+FrameGraph build_coverage(const FrameRequest& request, const Parameters& parameters, CoverageMode mode) {
+  FrameGraph graph(request.scene, request.width_px, request.height_px);
+  const FrameParts parts = prepare_frame(graph, request);
+  ForwardTarget target;
+  target.width = graph.width();
+  target.height = graph.height();
+  target.samples = mode.samples;
+  target.coverage_samples = mode.coverage_samples > mode.samples ? mode.coverage_samples : 0;
+  target.centroid = parameters.find("centroid")->second != 0;
+  target.drop_orphans = parameters.find("orphans")->second != 0;
+  target.color = graph.add_image({"multisampled_color", Format::rgba8_srgb, target.width, target.height,
+                                  target.samples, 1, target.coverage_samples});
+  target.depth = graph.add_image(
+      {"multisampled_depth", Format::d24_unorm_s8, target.width, target.height, target.samples});
+  add_forward(graph, parts, "", target);
+  graph.add_resolve("resolve", target.color, add_output(graph));
+  return graph;
+}
+
 int integer(const Parameters& parameters, std::string_view name) {
   return static_cast<int>(parameters.find(name)->second);
 }
@@ -116,6 +140,15 @@ FrameGraph build_msaa(const FrameRequest& request, const Parameters& parameters)
 
 constexpr ParameterInfo kCentroid{
     "centroid", 1, 0, 1, "attributes inside the primitive at partly covered pixels", "off|on"};
+constexpr CoverageMode kCsaaModes[] = {{4, 8}, {8, 8}, {4, 16}, {8, 16}};
+FrameGraph build_csaa(const FrameRequest& request, const Parameters& parameters) {
+  return build_coverage(request, parameters, kCsaaModes[integer(parameters, "mode")]);
+}
+constexpr CoverageMode kEqaaModes[] = {{2, 4}, {4, 8}, {8, 16}};
+FrameGraph build_eqaa(const FrameRequest& request, const Parameters& parameters) {
+  return build_coverage(request, parameters, kEqaaModes[integer(parameters, "mode")]);
+}
+
 constexpr ParameterInfo kVariant{"variant",
                                  0,
                                  0,
@@ -133,6 +166,16 @@ constexpr std::array<ParameterInfo, 3> msaa_beyond_8(double samples) {
 constexpr std::array<ParameterInfo, 2> ssaa(double samples) {
   return {ParameterInfo{"samples", samples, samples, samples, "shaded samples a pixel"}, kVariant};
 }
+constexpr std::array<ParameterInfo, 3> coverage(double mode, double modes, std::string_view description,
+                                                std::string_view choices) {
+  return {ParameterInfo{"mode", mode, 0, modes - 1, description, choices}, kCentroid,
+          ParameterInfo{"orphans", 0, 0, 1,
+                        "positions whose sample was overwritten: another of the same fragment, or none",
+                        "follow|drop"}};
+}
+constexpr auto kCsaa =
+    coverage(2, 4, "color and coverage samples: 4/8, 8/8, 4/16 or 8/16", "8x|8xq|16x|16xq");
+constexpr auto kEqaa = coverage(1, 3, "color and coverage samples", "2f4x|4f8x|8f16x");
 constexpr auto kMsaa2 = msaa(2), kMsaa4 = msaa(4), kMsaa8 = msaa(8);
 constexpr auto kMsaa16 = msaa_beyond_8(16), kMsaa32 = msaa_beyond_8(32);
 constexpr auto kSsaa4 = ssaa(4), kSsaa16 = ssaa(16), kSsaa64 = ssaa(64);
@@ -147,6 +190,9 @@ constexpr TechniqueInfo kTechniques[] = {
     {"msaa8x", "multisampling, hardware resolve", kMsaa8, build_msaa},
     {"msaa16x", "multisampling, native or as two shifted layers of 8 samples", kMsaa16, build_msaa},
     {"msaa32x", "multisampling, native or as four shifted layers of 8 samples", kMsaa32, build_msaa},
+    {"csaa", "coverage sampling: fewer color and depth samples than positions of coverage", kCsaa,
+     build_csaa},
+    {"eqaa", "enhanced quality: coverage sampling by its other name and modes", kEqaa, build_eqaa},
 };
 
 }  // namespace

@@ -188,6 +188,8 @@ Pass& add_target_pass(FrameGraph& graph, const FrameParts& parts, const std::str
   pass.width = target.width;
   pass.height = target.height;
   pass.samples = target.samples;
+  pass.coverage_samples = target.coverage_samples;
+  pass.drop_orphans = target.drop_orphans;
   pass.viewports = target.layers.viewports;
   pass.color = {target.color};
   pass.depth = target.depth;

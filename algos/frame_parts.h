@@ -41,6 +41,8 @@ struct ForwardTarget {
   pipeline::ImageId color, depth;
   int width = 0, height = 0, samples = 1;
   bool centroid = false, sample_rate = false;
+  int coverage_samples = 0;   ///< more than `samples`: with a coverage map (techniques 1.6)
+  bool drop_orphans = false;  ///< see Pass::drop_orphans
   glm::vec2 jitter_px{0.0f};  ///< samples move by this (x right, y down), so geometry moves against it
   /// Of the layers of a multicast target; no viewports: one layer, standard positions.
   pipeline::MulticastPattern layers;

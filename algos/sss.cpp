@@ -45,7 +45,12 @@ constexpr std::array<ParameterInfo, kShared.size() + kCount> with_shared(
   return all;
 }
 
-constexpr auto kCompute = with_shared(std::array<ParameterInfo, 2>{{
+constexpr auto kPoints = with_shared(std::array<ParameterInfo, 1>{{
+    {"points", 0, 0, 2, "from a geometry shader, or from the tessellator, whose points fill no buffer",
+     "auto|geometry_shader|tessellator"},
+}});
+constexpr auto kCompute = with_shared(std::array<ParameterInfo, 3>{{
+    {"atomics", 0, 0, 2, "sums in fixed point, or in floats", "auto|integer|float"},
     {"fixed_bits", 20, 12, 24, "of a sum's 32 bits, those behind the point"},
     {"radiance_max", 1, 1, 1024, "brightest sample; more takes bits from the rest"},
 }});
@@ -57,6 +62,9 @@ constexpr auto kLists = with_shared(std::array<ParameterInfo, 6>{{
     {"list_cap", 32, 1, 64, "nodes that the resolve reads of a pixel"},
     {"conservative", 0, 0, 1, "boxes from the geometry shader, or the rasterizer's own", "boxes|raster"},
 }});
+
+/// auto|plain|wished: the hardware's feature decides, or the parameter does.
+bool takes_feature(double choice, bool feature) { return choice == 2 || (choice == 0 && feature); }
 
 double value(const Parameters& parameters, std::string_view name) { return parameters.find(name)->second; }
 float real(const Parameters& parameters, std::string_view name) {
@@ -223,10 +231,13 @@ FrameGraph build_points(const FrameRequest& request, const Parameters& p) {
   pass.depth = f.depth;
   pass.depth_read_only = true;
   pass.sampled = slots(f);
+  const bool tessellated = takes_feature(value(p, "points"), request.features.tessellator_points);
   add_batches(pass, f, [&](DrawBatch& batch, SssVertex vertex) {
     const int scalars = 4 + sss_point_shading_program(vertex).varying_scalars;
-    const int most = std::max(
-        1, std::min(static_cast<int>(f.uniforms.samples_max), request.functional.gs_max_scalars / scalars));
+    const int limit =
+        tessellated ? static_cast<int>(f.uniforms.samples_max) : request.functional.gs_max_scalars / scalars;
+    const int most = std::max(1, std::min(static_cast<int>(f.uniforms.samples_max), limit));
+    batch.tessellated_points = tessellated;
     auto uniforms = std::make_shared<SssUniforms>(f.uniforms);
     uniforms->samples_max = static_cast<float>(most);
     batch.geometry = &sss_points_program(vertex, most);
@@ -327,6 +338,7 @@ FrameGraph build_compute(const FrameRequest& request, const Parameters& p) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   SssFrame f = start_frame(graph, request, p);
   if (f.critical.empty()) return graph;
+  const bool floats = takes_feature(value(p, "atomics"), request.features.float_atomics);
   f.uniforms.radiance_max = real(p, "radiance_max");
   f.uniforms.fixed_point_scale = static_cast<float>(std::exp2(std::floor(value(p, "fixed_bits"))));
   ComputeData data(*request.scene, f.critical, f.uniforms);
@@ -334,7 +346,7 @@ FrameGraph build_compute(const FrameRequest& request, const Parameters& p) {
   const BufferId sums = graph.add_buffer({"sums", static_cast<std::uint64_t>(words)});
   add_fill(graph, "sum_clear", {sums}, 1, {words, 0, false});
   Pass& pass = graph.add_pass("sample", PassKind::compute);
-  pass.compute = &sss_compute_program();
+  pass.compute = &sss_compute_program(floats);
   pass.groups_x = data.group_count();
   pass.groups_y = 1;
   pass.sampled = slots(f);
@@ -343,7 +355,7 @@ FrameGraph build_compute(const FrameRequest& request, const Parameters& p) {
                   sums};
   pass.storage_written = std::uint64_t{1} << kSssSumBuffer;
   pass.uniforms = std::make_shared<SssUniforms>(f.uniforms);
-  add_composite(graph, f, sss_fixed_composite_program(), {}, {sums});
+  add_composite(graph, f, sss_sum_composite_program(floats), {}, {sums});
   return graph;
 }
 
@@ -397,7 +409,7 @@ std::span<const TechniqueInfo> sss_techniques() {
   static constexpr TechniqueInfo kTechniques[] = {
       {.id = "sss_gs",
        .description = "8x multisampling, points on critical triangles from a geometry shader",
-       .parameters = kShared,
+       .parameters = kPoints,
        .build = build_points},
       {.id = "sss_cs",
        .description = "8x multisampling, points on critical triangles from a compute shader",

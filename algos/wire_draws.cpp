@@ -112,6 +112,8 @@ void add_wires(FrameGraph& graph, const FrameParts& parts, const std::string& na
   pass.width = target.width;
   pass.height = target.height;
   pass.samples = target.samples;
+  pass.coverage_samples = target.coverage_samples;
+  pass.drop_orphans = target.drop_orphans;
   pass.color = {target.color};
   pass.depth = target.depth;
   if (parts.shadow_map) pass.sampled = {parts.shadow_map};

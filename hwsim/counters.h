@@ -147,34 +147,35 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(cleared_tiles, "8x8 tiles cleared, all samples and targets")
 
 /// What techniques did, beyond what the units saw.
-#define HWSIM_TECHNIQUE_COUNTERS(X)                                                                \
-  X(lit_samples, "G-buffer samples, surfaces or aggregates that were lit, and pixels without any") \
-  X(slots_emitted_surfaces, "SBAA: surfaces that the analysis chose for a slot of the G-buffer")   \
-  X(slots_emitted_first_surfaces, "of these, for a pixel's first slot")                            \
-  X(slots_emitted_second_surfaces, "of these, for a pixel's second slot")                          \
-  X(slots_emitted_third_surfaces, "of these, for a pixel's third slot")                            \
-  X(slots_emitted_further_surfaces, "of these, for a pixel's fourth slot and beyond")              \
-  X(merge_fallbacks_surfaces,                                                                      \
-    "of these, single primitives: depths of the aligned samples lay in two groups")                \
-  X(slots_empty_surfaces, "of these, those that no fragment wrote")                                \
-  X(slot_conflicts_fragments, "SBAA: fragments that replaced another one's record in a slot")      \
-  X(agaa_aggregates, "AGAA: aggregates that the clustering of pixels' samples made")               \
-  X(agaa_plane_split_pixels, "AGAA: pixels in which it made several aggregates of one plane")      \
-  X(agaa_mixed_code_fragments, "AGAA: fragments whose samples belong to several aggregates")       \
-  X(sss_tested_primitives, "critical triangles that selective supersampling tested in this view")  \
-  X(sss_uncritical_primitives, "of these, out of view or not critical in it")                      \
-  X(sss_early_exit_primitives, "of these, too far from a highlight")                               \
-  X(sss_processed_primitives, "of these, sampled further")                                         \
-  X(sss_point_samples, "points placed on them")                                                    \
-  X(sss_shaded_samples, "lighting evaluations of the further samples")                             \
-  X(sss_stored_fragments, "fragments stored in per-pixel lists")                                   \
-  X(sss_dropped_fragments, "fragments that found the lists' memory full: the image lacks them")    \
-  X(sss_truncated_pixels, "pixels whose list was longer than the resolve reads")                   \
-  X(sss_list_1_pixels, "pixels with one fragment in their list")                                   \
-  X(sss_list_2_to_3_pixels, "pixels with 2 or 3")                                                  \
-  X(sss_list_4_to_7_pixels, "pixels with 4 to 7")                                                  \
-  X(sss_list_8_to_15_pixels, "pixels with 8 to 15")                                                \
-  X(sss_list_16_to_31_pixels, "pixels with 16 to 31")                                              \
+#define HWSIM_TECHNIQUE_COUNTERS(X)                                                                   \
+  X(lit_samples, "G-buffer samples, surfaces or aggregates that were lit, and pixels without any")    \
+  X(slots_emitted_surfaces, "SBAA: surfaces that the analysis chose for a slot of the G-buffer")      \
+  X(slots_emitted_first_surfaces, "of these, for a pixel's first slot")                               \
+  X(slots_emitted_second_surfaces, "of these, for a pixel's second slot")                             \
+  X(slots_emitted_third_surfaces, "of these, for a pixel's third slot")                               \
+  X(slots_emitted_further_surfaces, "of these, for a pixel's fourth slot and beyond")                 \
+  X(merge_fallbacks_surfaces,                                                                         \
+    "of these, single primitives: depths of the aligned samples lay in two groups")                   \
+  X(slots_empty_surfaces, "of these, those that no fragment wrote")                                   \
+  X(slot_conflicts_fragments, "SBAA: fragments that replaced another one's record in a slot")         \
+  X(agaa_aggregates, "AGAA: aggregates that the clustering of pixels' samples made")                  \
+  X(agaa_plane_split_pixels, "AGAA: pixels in which it made several aggregates of one plane")         \
+  X(agaa_mixed_code_fragments, "AGAA: fragments whose samples belong to several aggregates")          \
+  X(agaa_plane_path_pixels, "AGAA: pixels whose samples were clustered by their depth tile's planes") \
+  X(sss_tested_primitives, "critical triangles that selective supersampling tested in this view")     \
+  X(sss_uncritical_primitives, "of these, out of view or not critical in it")                         \
+  X(sss_early_exit_primitives, "of these, too far from a highlight")                                  \
+  X(sss_processed_primitives, "of these, sampled further")                                            \
+  X(sss_point_samples, "points placed on them")                                                       \
+  X(sss_shaded_samples, "lighting evaluations of the further samples")                                \
+  X(sss_stored_fragments, "fragments stored in per-pixel lists")                                      \
+  X(sss_dropped_fragments, "fragments that found the lists' memory full: the image lacks them")       \
+  X(sss_truncated_pixels, "pixels whose list was longer than the resolve reads")                      \
+  X(sss_list_1_pixels, "pixels with one fragment in their list")                                      \
+  X(sss_list_2_to_3_pixels, "pixels with 2 or 3")                                                     \
+  X(sss_list_4_to_7_pixels, "pixels with 4 to 7")                                                     \
+  X(sss_list_8_to_15_pixels, "pixels with 8 to 15")                                                   \
+  X(sss_list_16_to_31_pixels, "pixels with 16 to 31")                                                 \
   X(sss_list_from_32_pixels, "pixels with 32 or more")
 
 /// Bytes that units asked for, by stream; what of it DRAM moves is the timing engines' business.
@@ -190,7 +191,8 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(index_read_bytes, "indices fetched")                                  \
   X(constant_read_bytes, "constants bound")                               \
   X(shader_read_bytes, "shader code bound")                               \
-  X(other_write_bytes, "tile tables and other metadata written")
+  X(other_read_bytes, "coverage maps and other metadata read")            \
+  X(other_write_bytes, "coverage maps, tile tables and other metadata written")
 
 /// All units: X(struct prefix, id, list)
 #define HWSIM_COUNTER_UNITS(U)                      \

@@ -62,6 +62,7 @@ struct DefineUniforms {
   float separation = 0.02f;  ///< t
   bool unit_mean_normal = true;
   bool squared_sums = false;  ///< seeds beyond the second by sums of d^2 instead of d
+  bool reads_planes = false;  ///< tiles that depth compression holds as few planes take those for aggregates
 };
 /// Pass 2: image 0 depth, 1 normal codes; target 0 the codes, eight samples a layer.
 const pipeline::ComputeProgram& agaa_define_program();

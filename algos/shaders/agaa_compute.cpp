@@ -20,7 +20,12 @@ enum DefineBlock : int {
   kApartBlock = 6,      // a candidate against a seed
   kAssignBlock = 7,     // a sample
   kNearestBlock = 8,    // a sample against a seed
-  kStoreBlock = 9       // a word of codes
+  kStoreBlock = 9,      // a word of codes
+  kSamplesBlock = 10,   // a pixel whose samples are clustered one by one
+  kTileBlock = 11,      // the planes of a tile
+  kPlaneBlock = 12,     // a pixel against one of them
+  kOnPlaneBlock = 13,   // a sample against a plane
+  kCodeBlock = 14       // the code of a sample on a plane
 };
 
 template <class F>
@@ -45,6 +50,15 @@ class Clusters {
   Clusters(S& s, const DefineUniforms& u) : s_(s), u_(u) {}
 
   void run() {
+    int planes = 0;
+    s_.uniform_branch(kTileBlock, u_.reads_planes, [&]() HWY_ATTR { planes = find_planes(); });
+    if (planes > 0) cluster_planes(planes);
+    s_.uniform_branch(kSamplesBlock, planes == 0, [&]() HWY_ATTR { cluster_samples(); });
+    store_codes();
+  }
+
+ private:
+  void cluster_samples() {
     read();
     find_first_seed();
     for (int j = 1; j < u_.aggregates; ++j) find_seed(j);
@@ -52,7 +66,79 @@ class Clusters {
     if constexpr (!kCounting<S>) count_plane_splits();
   }
 
- private:
+  /// The planes of the wave's tile that are no background; 0: more than aggregates, or the tile is not held
+  /// as planes (techniques 4.6).
+  int find_planes() {
+    int count = 0;
+    const int all = s_.tile_plane_count();
+    for (int p = 0; p < all; ++p) {
+      if (s_.tile_plane_is_far(p)) continue;
+      if (count == u_.aggregates) return 0;
+      plane_[static_cast<std::size_t>(count++)] = p;
+    }
+    return all > 0 && count == 0 ? kOnlyBackground : count;
+  }
+
+  /// A plane where its samples lie in the pixel: their mean place, and the plane's normal in view space.
+  SurfaceSample<F> place_on_plane(int plane, F& held) {
+    F count(0.0f), dx(0.0f), dy(0.0f);
+    s_.loop(kOnPlaneBlock, u_.samples, s_.valid(), [&](int i) HWY_ATTR {
+      const pipeline::SamplePosition p = u_.positions[static_cast<std::size_t>(i)];
+      const F one = select(s_.in_tile_plane(plane, i), F(1.0f), F(0.0f));
+      count = count + one;
+      dx = dx + one * F(static_cast<float>(p.x) * 0.0625f);
+      dy = dy + one * F(static_cast<float>(p.y) * 0.0625f);
+    });
+    const F share = F(1.0f) / max(count, F(1.0f));
+    const F x = to_float(s_.pixel_x()) + F(0.5f) + dx * share,
+            y = to_float(s_.pixel_y()) + F(0.5f) + dy * share;
+    const auto at = [&](F px, F py)
+                        HWY_ATTR { return unproject(px, py, s_.tile_plane_depth(plane, px, py)); };
+    SurfaceSample<F> place;
+    place.position = at(x, y);
+    const Vec3<F> across = at(x + F(1.0f), y) - place.position, down = at(x, y + F(1.0f)) - place.position;
+    const Vec3<F> normal = cross(down, across);  // toward the eye: y goes down on the screen
+    place.normal = normal * rsqrt(max(dot(normal, normal), F(1e-30f)));
+    held = count;
+    return place;
+  }
+
+  // Aggregate i is plane i, unless it comes too near to another one: both paths then behave alike where
+  // surfaces lie apart.
+  void cluster_planes(int planes) {
+    if (planes == kOnlyBackground) return;
+    M covered = F(1.0f) < F(0.0f);
+    inv_k2_ = F(u_.inv_k2);
+    std::array<I, 4> code{};
+    const auto count = static_cast<std::size_t>(planes);
+    I made(0);
+    s_.loop(kPlaneBlock, planes, s_.valid(), [&](int index) HWY_ATTR {
+      const auto a = static_cast<std::size_t>(index);
+      F held;
+      seed_[a] = place_on_plane(plane_[a], held);
+      M own = held > F(0.5f);
+      covered = covered | own;
+      code[a] = made;
+      if (u_.footprint_k > 0.0f) grow_k(seed_[a].position.z);
+      for (std::size_t b = 0; b < a; ++b) {
+        const M joins = own & exists_[b] & (distance(seed_[a], seed_[b]) < F(u_.separation));
+        code[a] = select(joins, code[b], code[a]);
+        own = own & !joins;
+      }
+      exists_[a] = own;
+      made = made + select(own, I(1), I(0));
+      s_.count(&TechniqueCounters::agaa_aggregates, own);
+    });
+    const int bits = u_.code_bits;
+    s_.loop(kCodeBlock, u_.samples, s_.valid(), [&](int i) HWY_ATTR {
+      I of(0);
+      for (std::size_t a = 1; a < count; ++a) of = select(s_.in_tile_plane(plane_[a], i), code[a], of);
+      const auto word = static_cast<std::size_t>(i / 8);
+      words_[word] = words_[word] + of * I(1 << (i % 8 * bits));
+    });
+    s_.count(&TechniqueCounters::agaa_plane_path_pixels, s_.valid() & covered);
+  }
+
   // Equation 1.
   F distance(const SurfaceSample<F>& a, const SurfaceSample<F>& b) const {
     const Vec3<F> d = a.position - b.position;
@@ -85,16 +171,22 @@ class Clusters {
     if (u_.unit_mean_normal) mean_.normal = mean_.normal * rsqrt(max(length2, F(1e-12f)));
     mean_.normal = select(length2 < F(1e-12f), first_.normal, mean_.normal);
     inv_k2_ = F(u_.inv_k2);
-    if (u_.footprint_k > 0.0f) {  // k grows with the pixel's footprint
-      const F distance = u_.perspective ? F(0.0f) - mean_.position.z : F(1.0f);
-      const F k = F(u_.footprint_k) * distance;
-      inv_k2_ = min(inv_k2_, F(1.0f) / max(k * k, F(1e-20f)));
-    }
+    if (u_.footprint_k > 0.0f) grow_k(mean_.position.z);
+  }
+
+  // k grows with the pixel's footprint.
+  void grow_k(F view_z) {
+    const F distance = u_.perspective ? F(0.0f) - view_z : F(1.0f);
+    const F k = F(u_.footprint_k) * distance;
+    inv_k2_ = min(F(u_.inv_k2), F(1.0f) / max(k * k, F(1e-20f)));
   }
 
   Vec3<F> unproject(I x, I y, pipeline::SamplePosition p, F z) const {
     const F px = to_float(x) + F(0.5f + static_cast<float>(p.x) * 0.0625f);
     const F py = to_float(y) + F(0.5f + static_cast<float>(p.y) * 0.0625f);
+    return unproject(px, py, z);
+  }
+  Vec3<F> unproject(F px, F py, F z) const {
     const F ndc_x = px * F(2.0f / static_cast<float>(u_.width)) - F(1.0f);
     const F ndc_y = F(1.0f) - py * F(2.0f / static_cast<float>(u_.height));
     const glm::mat4& m = u_.view_from_clip;  // a projection's inverse: x and y apart, z and w of z alone
@@ -155,7 +247,6 @@ class Clusters {
   void assign() {
     const int bits = u_.code_bits;
     if (bits == 0) return;
-    std::array<I, 4> words = {I(0), I(0), I(0), I(0)};
     s_.loop(kAssignBlock, u_.samples, covered_, [&](int i) HWY_ATTR {
       const auto n = static_cast<std::size_t>(i);
       F nearest(1e30f);
@@ -168,10 +259,14 @@ class Clusters {
         code = select(nearer, I(a), code);
       });
       code = select(visible_[n] & covered_, code, I(0));
-      words[n / 8] = words[n / 8] + code * I(1 << (i % 8 * bits));
+      words_[n / 8] = words_[n / 8] + code * I(1 << (i % 8 * bits));
     });
+  }
+
+  void store_codes() {
+    if (u_.code_bits == 0) return;
     s_.loop(kStoreBlock, (u_.samples + 7) / 8, s_.valid(), [&](int i) HWY_ATTR {
-      const F word = to_float(words[static_cast<std::size_t>(i)]);
+      const F word = to_float(words_[static_cast<std::size_t>(i)]);
       s_.store_image(0, s_.pixel_x(), s_.pixel_y(), I(i), {word, F(0.0f), F(0.0f), F(0.0f)}, s_.valid());
     });
   }
@@ -211,6 +306,9 @@ class Clusters {
   std::array<M, 4> exists_;
   M covered_;
   F inv_k2_;
+  std::array<I, 4> words_ = {I(0), I(0), I(0), I(0)};  ///< the codes
+  static constexpr int kOnlyBackground = 5;
+  std::array<int, 4> plane_{};  ///< of each aggregate
 };
 
 struct DefineShader {

@@ -295,6 +295,7 @@ struct ShadeShader {
         s.count(&TechniqueCounters::lit_samples, occupied);
       });
     });
+    s.count(&TechniqueCounters::lit_samples, !(covered > F(0.0f)));  // as pixels of other techniques count
     const Vec3<F> sky = constant<F>(u.background) * max(F(1.0f) - covered, F(0.0f));
     s.output(0, {color.x + sky.x, color.y + sky.y, color.z + sky.z, F(1.0f)});
   }

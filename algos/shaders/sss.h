@@ -64,8 +64,9 @@ const pipeline::FragmentProgram& sss_composite_program();
 // Points from a compute shader. Buffers: triangles, vertices, groups, sums.
 inline constexpr int kSssTriangleBuffer = 0, kSssVertexBuffer = 1, kSssGroupBuffer = 2, kSssSumBuffer = 3;
 inline constexpr int kSssGroupWords = 4;  ///< first triangle, triangles, draw, first triangle in the draw
-const pipeline::ComputeProgram& sss_compute_program();
-const pipeline::FragmentProgram& sss_fixed_composite_program();
+// Sums by integer atomics in fixed point, or by atomics of floats (GpuFeatures::float_atomics).
+const pipeline::ComputeProgram& sss_compute_program(bool floats);
+const pipeline::FragmentProgram& sss_sum_composite_program(bool floats);
 
 /// Fills buffer 0 with a word, and buffer 2, if `counter`, with one zero.
 struct SssClearUniforms {

@@ -16,7 +16,7 @@ namespace hwsim::algos::HWY_NAMESPACE {
 
 /// Vertices as SurfaceVaryings has them, in the mesh's space: normal, uv, position, and tangent and color
 /// where the scene has any.
-template <class S>
+template <class S, bool kFloat>
 class PointThread {
  public:
   using F = typename S::F;
@@ -120,11 +120,15 @@ class PointThread {
       }
       const SssVertex vertex = u_.vertex_words == V::kFull ? SssVertex::full : SssVertex::textured;
       const Vec3<F> color = light_point(s_, u_, point, vertex, seen);
-      const F scale = weight * F(u_.fixed_point_scale);
+      const F scale = kFloat ? weight : weight * F(u_.fixed_point_scale);
       const I first = (py * I(u_.width_px) + px) * I(4);
       const F sums[4] = {color.x, color.y, color.z, F(1.0f)};
-      for (int k = 0; k < 4; ++k)
-        s_.atomic_add(kSssSumBuffer, first + I(k), to_int(floor(sums[k] * scale + F(0.5f))), seen);
+      for (int k = 0; k < 4; ++k) {
+        if constexpr (kFloat)
+          s_.atomic_add_float(kSssSumBuffer, first + I(k), sums[k] * scale, seen);
+        else
+          s_.atomic_add(kSssSumBuffer, first + I(k), to_int(floor(sums[k] * scale + F(0.5f))), seen);
+      }
     });
   }
 
@@ -135,14 +139,16 @@ class PointThread {
 };
 
 /// One pass through every block, for the operation counts.
-inline pipeline::ComputeProgram describe_sss_compute(void (*run)(pipeline::GroupBatch&, const void*)) {
+template <bool kFloat>
+pipeline::ComputeProgram describe_sss_compute(void (*run)(pipeline::GroupBatch&, const void*)) {
   lanes::CountFragment s;
   SssUniforms u;
   u.vertex_words = pipeline::SurfaceVaryings::kBasic;
   const SssDraw draw;
-  PointThread<lanes::CountFragment>(s, u, draw).run(s.pixel_x(), s.pixel_y(), s.valid());
+  PointThread<lanes::CountFragment, kFloat>(s, u, draw).run(s.pixel_x(), s.pixel_y(), s.valid());
   pipeline::ComputeProgram program;
-  program.name = "sss_compute";
+  program.name = kFloat ? "sss_compute_float" : "sss_compute";
+  program.ordered_storage = s.ordered_storage();
   program.run = run;
   program.ops = s.blocks();
   program.block_count = s.block_count();
@@ -181,7 +187,8 @@ void for_each_register(pipeline::GroupBatch& group, int count, Body&& body) {
   lanes::end_wave(group, count);
 }
 
-void run_sss_compute(pipeline::GroupBatch& group, const void* uniforms) {
+template <bool kFloat>
+void run_points_group(pipeline::GroupBatch& group, const void* uniforms) {
   const auto& u = *static_cast<const SssUniforms*>(uniforms);
   const std::uint32_t* entry = group.resources->buffers[kSssGroupBuffer] + kSssGroupWords * group.group_x;
   const auto first = static_cast<std::int32_t>(entry[0]), count = static_cast<std::int32_t>(entry[1]);
@@ -190,9 +197,12 @@ void run_sss_compute(pipeline::GroupBatch& group, const void* uniforms) {
   group.material = group.resources->materials + draw.material;
   group.counters->mem.storage_read_bytes += 4 * kSssGroupWords;
   for_each_register(group, count, [&](ComputeLanes& s, LaneI n) HWY_ATTR {
-    PointThread<ComputeLanes>(s, u, draw).run(n + LaneI(first), n + LaneI(before), s.valid());
+    PointThread<ComputeLanes, kFloat>(s, u, draw).run(n + LaneI(first), n + LaneI(before), s.valid());
   });
 }
+
+void run_sss_compute(pipeline::GroupBatch& g, const void* u) { run_points_group<false>(g, u); }
+void run_sss_compute_float(pipeline::GroupBatch& g, const void* u) { run_points_group<true>(g, u); }
 
 void run_sss_clear(pipeline::GroupBatch& group, const void* uniforms) {
   const auto& u = *static_cast<const SssClearUniforms*>(uniforms);
@@ -212,15 +222,20 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace hwsim::algos {
 HWY_EXPORT(run_sss_compute);
+HWY_EXPORT(run_sss_compute_float);
 HWY_EXPORT(run_sss_clear);
 
-const pipeline::ComputeProgram& sss_compute_program() {
-  static const pipeline::ComputeProgram program =
-      HWY_NAMESPACE::describe_sss_compute([](pipeline::GroupBatch& g, const void* u) {
+const pipeline::ComputeProgram& sss_compute_program(bool floats) {
+  static const pipeline::ComputeProgram programs[] = {
+      HWY_NAMESPACE::describe_sss_compute<false>([](pipeline::GroupBatch& g, const void* u) {
         HWY_DYNAMIC_DISPATCH(run_sss_compute)
         (g, u);
-      });
-  return program;
+      }),
+      HWY_NAMESPACE::describe_sss_compute<true>([](pipeline::GroupBatch& g, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_sss_compute_float)
+        (g, u);
+      })};
+  return programs[floats ? 1 : 0];
 }
 
 const pipeline::ComputeProgram& sss_clear_program() {

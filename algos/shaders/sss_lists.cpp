@@ -7,11 +7,10 @@
 #define HWY_TARGET_INCLUDE "algos/shaders/sss_lists.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include "algos/shaders/sss_geometry-inl.h"
 #include "algos/shaders/sss_pixel-inl.h"
-#include "algos/shaders/sss_view-inl.h"
 #include "pipeline/shade/count_fragment-inl.h"
 #include "pipeline/shade/fragment_lanes-inl.h"
-#include "pipeline/shade/geometry_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::algos::HWY_NAMESPACE {
@@ -24,34 +23,20 @@ constexpr int box_scalars(SssVertex vertex) { return 3 * corner_scalars(vertex) 
 /// The screen bounding box of a chosen triangle, half a pixel larger on each side; or, where the rasterizer
 /// is conservative itself, the triangle.
 template <SssVertex kVertex>
-struct BoxShader {
-  using Uniforms = SssUniforms;
-  static constexpr pipeline::GeometryOutput kOutput = pipeline::GeometryOutput::triangle_strip;
-  static constexpr int kMaxVertices = 4;
-  static constexpr int kInputScalars =
-      kVertex == SssVertex::full ? pipeline::SurfaceVaryings::kFull : pipeline::SurfaceVaryings::kBasic;
-
+struct BoxShader : SssGeometryShader<kVertex, pipeline::GeometryOutput::triangle_strip, 4> {
   template <class S>
   static void run(S& s, const SssUniforms& u) {
     using F = typename S::F;
-    using V = pipeline::SurfaceVaryings;
-    SssCorner<F> c[3];
-    for (int v = 0; v < 3; ++v) {
-      c[v].clip = s.clip_position(v);
-      c[v].normal = normalize(s.attr3(v, V::kNormal));
-      c[v].position = s.attr3(v, V::kPosition);
-    }
-    const SssTriangle<F> t = measure_triangle(s, u, s.winding(), c);
-    const auto chosen = select_triangles(s, u, t, c, s.valid());
-    s.branch(kStoreBlock, chosen, [&]() HWY_ATTR {
-      std::array<F, static_cast<std::size_t>(box_scalars(kVertex))> out;
-      for (int v = 0; v < 3; ++v) store_corner(s, t, c[v], v, out.data() + v * corner_scalars(kVertex));
-      F* of_triangle = out.data() + 3 * corner_scalars(kVertex);
-      of_triangle[kArea2] = t.area2;
-      of_triangle[kGrid] = u.grid > 0 ? F(static_cast<float>(u.grid)) : fitting_grid(t.highlight_px);
-      of_triangle[kBias] = t.depth_bias;
-      emit_box(s, u, c, chosen, std::span<const F>(out));
-    });
+    BoxShader::for_chosen(
+        s, u, [&](const SssCorner<F>(&c)[3], const SssTriangle<F>& t, typename S::M chosen) HWY_ATTR {
+          std::array<F, static_cast<std::size_t>(box_scalars(kVertex))> out;
+          for (int v = 0; v < 3; ++v) store_corner(s, t, c[v], v, out.data() + v * corner_scalars(kVertex));
+          F* of_triangle = out.data() + 3 * corner_scalars(kVertex);
+          of_triangle[kArea2] = t.area2;
+          of_triangle[kGrid] = u.grid > 0 ? F(static_cast<float>(u.grid)) : fitting_grid(t.highlight_px);
+          of_triangle[kBias] = t.depth_bias;
+          emit_box(s, u, c, chosen, std::span<const F>(out));
+        });
   }
 
  private:
@@ -91,49 +76,6 @@ struct BoxShader {
              out);
   }
 };
-
-/// Nodes: color and covered 64ths of the pixel, depth, the next node. 12 bytes: 8 bits of the color's square
-/// root each; 16 bytes: 16 bits linear.
-template <class S>
-struct NodeColor {
-  typename S::I words[2];
-};
-
-template <class S>
-NodeColor<S> pack_color(const SssUniforms& u, const Vec3<typename S::F>& c, typename S::F covered) {
-  using F = typename S::F;
-  using I = typename S::I;
-  const F range(1.0f / u.radiance_max);
-  const auto code = [&](F v, float most) HWY_ATTR { return to_int(floor(v * F(most) + F(0.5f))); };
-  if (u.node_words == 3) {
-    const auto root = [&](F v) HWY_ATTR { return code(sqrt(v * range), 255.0f); };
-    const I word =
-        root(c.x) | shift_left<8>(root(c.y)) | shift_left<16>(root(c.z)) | shift_left<24>(to_int(covered));
-    return {{word, I(0)}};
-  }
-  const auto linear = [&](F v) HWY_ATTR { return code(v * range, 65535.0f); };
-  return {{linear(c.x) | shift_left<16>(linear(c.y)), linear(c.z) | shift_left<16>(to_int(covered))}};
-}
-
-/// Color, and the pixel's covered part.
-template <class S>
-Vec4<typename S::F> unpack_color(const SssUniforms& u, const NodeColor<S>& node) {
-  using F = typename S::F;
-  using I = typename S::I;
-  const F range(u.radiance_max), part(1.0f / 64.0f);
-  const auto low = [&](I w) HWY_ATTR { return to_float(w & I(0xffff)) * F(1.0f / 65535.0f) * range; };
-  if (u.node_words == 3) {
-    const I w = node.words[0];
-    const auto square = [&](I code) HWY_ATTR {
-      const F root = to_float(code & I(255)) * F(1.0f / 255.0f);
-      return root * root * range;
-    };
-    return {square(w), square(shift_right<8>(w)), square(shift_right<16>(w)),
-            to_float(shift_right<24>(w) & I(255)) * part};
-  }
-  return {low(node.words[0]), low(shift_right<16>(node.words[0])), low(node.words[1]),
-          to_float(shift_right<16>(node.words[1]) & I(0xffff)) * part};
-}
 
 template <SssVertex kVertex>
 struct ListShader {

@@ -1,6 +1,7 @@
 // Which places of a pixel a triangle covers (techniques 5.4). Per-target include guard, see
 // shade/lanes-inl.h.
 #include <hwy/highway.h>
+#include "algos/shaders/sss_view-inl.h"
 #include "pipeline/shade/vec-inl.h"
 #if defined(HWSIM_ALGOS_SHADERS_SSS_PIXEL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_ALGOS_SHADERS_SSS_PIXEL_INL_H_
@@ -42,6 +43,49 @@ struct PixelTriangle {
     return {F(1.0f) - b1 - b2, b1, b2};
   }
 };
+
+/// Nodes: color and covered 64ths of the pixel, depth, the next node. 12 bytes: 8 bits of the color's square
+/// root each; 16 bytes: 16 bits linear.
+template <class S>
+struct NodeColor {
+  typename S::I words[2];
+};
+
+template <class S>
+NodeColor<S> pack_color(const SssUniforms& u, const Vec3<typename S::F>& c, typename S::F covered) {
+  using F = typename S::F;
+  using I = typename S::I;
+  const F range(1.0f / u.radiance_max);
+  const auto code = [&](F v, float most) HWY_ATTR { return to_int(floor(v * F(most) + F(0.5f))); };
+  if (u.node_words == 3) {
+    const auto root = [&](F v) HWY_ATTR { return code(sqrt(v * range), 255.0f); };
+    const I word =
+        root(c.x) | shift_left<8>(root(c.y)) | shift_left<16>(root(c.z)) | shift_left<24>(to_int(covered));
+    return {{word, I(0)}};
+  }
+  const auto linear = [&](F v) HWY_ATTR { return code(v * range, 65535.0f); };
+  return {{linear(c.x) | shift_left<16>(linear(c.y)), linear(c.z) | shift_left<16>(to_int(covered))}};
+}
+
+/// Color, and the pixel's covered part.
+template <class S>
+Vec4<typename S::F> unpack_color(const SssUniforms& u, const NodeColor<S>& node) {
+  using F = typename S::F;
+  using I = typename S::I;
+  const F range(u.radiance_max), part(1.0f / 64.0f);
+  const auto low = [&](I w) HWY_ATTR { return to_float(w & I(0xffff)) * F(1.0f / 65535.0f) * range; };
+  if (u.node_words == 3) {
+    const I w = node.words[0];
+    const auto square = [&](I code) HWY_ATTR {
+      const F root = to_float(code & I(255)) * F(1.0f / 255.0f);
+      return root * root * range;
+    };
+    return {square(w), square(shift_right<8>(w)), square(shift_right<16>(w)),
+            to_float(shift_right<24>(w) & I(255)) * part};
+  }
+  return {low(node.words[0]), low(shift_right<16>(node.words[0])), low(node.words[1]),
+          to_float(shift_right<16>(node.words[1]) & I(0xffff)) * part};
+}
 
 }  // namespace hwsim::algos::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -7,10 +7,9 @@
 #define HWY_TARGET_INCLUDE "algos/shaders/sss_points.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
-#include "algos/shaders/sss_view-inl.h"
+#include "algos/shaders/sss_geometry-inl.h"
 #include "pipeline/shade/count_fragment-inl.h"
 #include "pipeline/shade/fragment_lanes-inl.h"
-#include "pipeline/shade/geometry_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::algos::HWY_NAMESPACE {
@@ -21,34 +20,26 @@ constexpr int point_scalars(SssVertex vertex) {
 }
 
 template <SssVertex kVertex>
-struct PointShader {
-  using Uniforms = SssUniforms;
-  static constexpr pipeline::GeometryOutput kOutput = pipeline::GeometryOutput::points;
-  static constexpr int kMaxVertices = 64;
-  static constexpr int kInputScalars =
-      kVertex == SssVertex::full ? pipeline::SurfaceVaryings::kFull : pipeline::SurfaceVaryings::kBasic;
-
+struct PointShader : SssGeometryShader<kVertex, pipeline::GeometryOutput::points, 64> {
   template <class S>
   static void run(S& s, const SssUniforms& u) {
     using F = typename S::F;
     using I = typename S::I;
-    SssCorner<F> c[3];
-    Values<F> values;
-    read_corners(s, c, values);
-    const SssTriangle<F> t = measure_triangle(s, u, s.winding(), c);
-    const auto chosen = select_triangles(s, u, t, c, s.valid());
-    s.branch(kStoreBlock, chosen, [&]() HWY_ATTR {
-      const SssPattern<F> pattern = make_pattern<F, I>(u, t, c, s.primitive());
-      std::array<F, point_scalars(kVertex)> out;
-      out.back() = pattern.weight;
-      if constexpr (kVertex != SssVertex::plain) set_gradients(t, c, values, out);
-      s.loop_each(kSampleBlock, to_int(pattern.count), chosen, [&](int i, typename S::M lanes_left) HWY_ATTR {
-        const Vec3<F> b = pattern_place(pattern, i);
-        place(t, c, values, b, out);
-        s.emit(lanes_left, clip_place(t, c, b), std::span<const F>(out));
-        s.count(&TechniqueCounters::sss_point_samples, lanes_left);
-      });
-    });
+    PointShader::for_chosen(
+        s, u, [&](const SssCorner<F>(&c)[3], const SssTriangle<F>& t, typename S::M chosen) HWY_ATTR {
+          Values<F> values;
+          read_attributes(s, c, values);
+          const SssPattern<F> pattern = make_pattern<F, I>(u, t, c, s.primitive());
+          std::array<F, point_scalars(kVertex)> out;
+          out.back() = pattern.weight;
+          if constexpr (kVertex != SssVertex::plain) set_gradients(t, c, values, out);
+          s.loop_each(kSampleBlock, to_int(pattern.count), chosen, [&](int i, typename S::M left) HWY_ATTR {
+            const Vec3<F> b = pattern_place(pattern, i);
+            place(t, c, values, b, out);
+            s.emit(left, clip_place(t, c, b), std::span<const F>(out));
+            s.count(&TechniqueCounters::sss_point_samples, left);
+          });
+        });
   }
 
  private:
@@ -60,19 +51,14 @@ struct PointShader {
   using Scalars = std::array<F, static_cast<std::size_t>(point_scalars(kVertex))>;
 
   template <class S, class F>
-  static void read_corners(S& s, SssCorner<F> (&c)[3], Values<F>& values) {
-    using V = pipeline::SurfaceVaryings;
+  static void read_attributes(S& s, const SssCorner<F> (&c)[3], Values<F>& values) {
     for (int v = 0; v < 3; ++v) {
-      c[v].clip = s.clip_position(v);
-      c[v].normal = normalize(s.attr3(v, V::kNormal));
       std::array<F, kCount>& out = values[static_cast<std::size_t>(v)];
       for (std::size_t k = 3; k < kCount; ++k)
         out[k] = s.attr(v, attribute_place(kVertex, static_cast<int>(k)));
       out[0] = c[v].normal.x;
       out[1] = c[v].normal.y;
       out[2] = c[v].normal.z;
-      constexpr std::size_t kPosition = kVertex == SssVertex::plain ? 3 : V::kPosition;
-      c[v].position = {out[kPosition], out[kPosition + 1], out[kPosition + 2]};
     }
   }
 
@@ -149,8 +135,9 @@ struct CompositeShader {
   }
 };
 
-/// The sums of the compute variant: four fixed-point words a pixel in buffer slot 0.
-struct FixedCompositeShader {
+/// The sums of the compute variant: four words a pixel in buffer slot 0, fixed-point or floats.
+template <bool kFloat>
+struct SumCompositeShader {
   using Uniforms = SssUniforms;
   template <class S>
   static void run(S& s, const SssUniforms& u) {
@@ -158,9 +145,10 @@ struct FixedCompositeShader {
     using I = typename S::I;
     const I first = (s.pixel_y() * I(u.width_px) + s.pixel_x()) * I(4);
     const F scale(1.0f / u.fixed_point_scale);
-    // Unsigned words: the high half apart, so that no value is taken for a negative one.
     const auto word = [&](int i) HWY_ATTR {
       const I value = s.load_buffer(0, first + I(i), s.active());
+      if constexpr (kFloat) return bits_to_float(value);
+      // Unsigned words: the high half apart, so that no value is taken for a negative one.
       return (to_float(shift_right<16>(value) & I(0xffff)) * F(65536.0f) + to_float(value & I(0xffff))) *
              scale;
     };
@@ -191,7 +179,10 @@ void run_composite(pipeline::FragmentBatch& b, const void* u) {
   lanes::run_fragment_shader<CompositeShader>(b, u);
 }
 void run_fixed_composite(pipeline::FragmentBatch& b, const void* u) {
-  lanes::run_fragment_shader<FixedCompositeShader>(b, u);
+  lanes::run_fragment_shader<SumCompositeShader<false>>(b, u);
+}
+void run_float_composite(pipeline::FragmentBatch& b, const void* u) {
+  lanes::run_fragment_shader<SumCompositeShader<true>>(b, u);
 }
 
 }  // namespace hwsim::algos::HWY_NAMESPACE
@@ -207,6 +198,7 @@ HWY_EXPORT(run_shading_textured);
 HWY_EXPORT(run_shading_full);
 HWY_EXPORT(run_composite);
 HWY_EXPORT(run_fixed_composite);
+HWY_EXPORT(run_float_composite);
 
 namespace {
 using pipeline::FragmentBatch;
@@ -280,13 +272,18 @@ const FragmentProgram& sss_composite_program() {
   return program;
 }
 
-const FragmentProgram& sss_fixed_composite_program() {
-  static const FragmentProgram program =
-      pipeline::HWY_NAMESPACE::describe_fragment_shader<shaders::FixedCompositeShader>(
-          "sss_fixed_composite", [](FragmentBatch& b, const void* u) {
-            HWY_DYNAMIC_DISPATCH(run_fixed_composite)(b, u);
-          });
-  return program;
+const FragmentProgram& sss_sum_composite_program(bool floats) {
+  using pipeline::HWY_NAMESPACE::describe_fragment_shader;
+  static const FragmentProgram programs[] = {
+      describe_fragment_shader<shaders::SumCompositeShader<false>>(
+          "sss_fixed_composite",
+          [](FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_fixed_composite)
+                                                (b, u); }),
+      describe_fragment_shader<shaders::SumCompositeShader<true>>(
+          "sss_float_composite", [](FragmentBatch& b, const void* u) {
+            HWY_DYNAMIC_DISPATCH(run_float_composite)(b, u);
+          })};
+  return programs[floats ? 1 : 0];
 }
 
 }  // namespace hwsim::algos

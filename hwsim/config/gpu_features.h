@@ -6,6 +6,7 @@ namespace hwsim {
 
 struct GpuFeatures {
   int native_msaa_max = 8;
+  int coverage_samples_max = 0;  ///< positions of coverage beyond the color samples (CSAA, EQAA); 0: none
   bool target_independent_raster = false;
   bool post_depth_coverage = false;
   bool coverage_override = false;

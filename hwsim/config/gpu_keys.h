@@ -255,6 +255,9 @@ template <class V>
 void describe(V& v, GpuFeatures& f) {
   v.key({"features.native_msaa_max", 1, 64, kNoFlags, "largest sample count; a power of two"},
         f.native_msaa_max);
+  v.key({"features.coverage_samples_max", 0, 32, kNoFlags,
+         "coverage samples of a pixel beyond its color samples (CSAA, EQAA), both together; 0: none"},
+        f.coverage_samples_max);
   v.key({"features.target_independent_raster", 0, 0, kNoFlags, "more raster samples than color samples"},
         f.target_independent_raster);
   v.key({"features.post_depth_coverage", 0, 0, kNoFlags, "shaders read the coverage after the depth test"},

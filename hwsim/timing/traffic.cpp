@@ -22,6 +22,7 @@ StreamBytes requested_bytes(const PassCounters& c) {
   read(Stream::index, c.mem.index_read_bytes);
   read(Stream::constant, c.mem.constant_read_bytes);
   read(Stream::shader, c.mem.shader_read_bytes);
+  read(Stream::other, c.mem.other_read_bytes);
   write(Stream::other, c.mem.other_write_bytes);
   return bytes;
 }

@@ -94,14 +94,6 @@ void pack_samples(const GpuImage& image, int block, PackedDepthTile& out) {
   }
 }
 
-// One operation after the other, as the vector code rounds.
-std::uint32_t value_at(const PlaneEquation& z, float x, float y, float scale) {
-  const float across = z.ddx * x, down = z.ddy * y;
-  const float sum = z.base + down;
-  const float plane = sum + across;
-  return depth_bits(plane > 0.0f ? (plane < 1.0f ? plane : 1.0f) : 0.0f, scale);
-}
-
 void unpack_planes(const GpuImage& image, const PackedDepthTile& tile, std::span<std::uint32_t> values) {
   const auto slots = static_cast<std::size_t>(plane_slots(tile.form));
   std::array<PackedPlane, kMaxDepthPlanes> planes{};
@@ -112,7 +104,7 @@ void unpack_planes(const GpuImage& image, const PackedDepthTile& tile, std::span
     const PackedPlane& p = planes[reader.get(index_bits(tile.form))];
     const SamplePosition position = image.plane_positions[i / kBlockLanes];
     const int lane = static_cast<int>(i % kBlockLanes);
-    values[i] = value_at(
+    values[i] = plane_depth_at(
         {p.base, p.ddx, p.ddy},
         (static_cast<float>(lane_x(lane)) - p.reference_x) + 0.5f + static_cast<float>(position.x) * 0.0625f,
         (static_cast<float>(lane_y(lane)) - p.reference_y) + 0.5f + static_cast<float>(position.y) * 0.0625f,

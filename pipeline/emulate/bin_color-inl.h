@@ -1,5 +1,5 @@
 // Color writes of a screen bin. Per-target include guard.
-#include "pipeline/emulate/bin_depth-inl.h"
+#include "pipeline/emulate/bin_coverage-inl.h"
 #include "pipeline/emulate/color_traffic.h"
 #include "pipeline/emulate/color_write-inl.h"
 
@@ -14,9 +14,9 @@ HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
 /// Color of one bin.
-class BinColor : protected BinDepth {
+class BinColor : protected BinCoverage {
  protected:
-  using BinDepth::BinDepth;
+  using BinCoverage::BinCoverage;
 
   void write_tile(const FragmentBatch& batch, int block, const std::uint64_t* masks, int first_sample,
                   int last_sample) {

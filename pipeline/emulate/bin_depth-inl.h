@@ -18,8 +18,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
-/// Depth and stencil of one bin. BinDepth, BinColor, BinShading and BinRunner are the stages of one loop over
-/// a bin's triangles: each adds its stage to what the one before it offers.
+/// Depth and stencil of one bin. BinDepth, BinCoverage, BinColor, BinShading and BinRunner are the stages of
+/// one loop over a bin's triangles: each adds its stage to what the one before it offers.
 class BinDepth {
  protected:
   BinDepth(const PassContext& context, int layer, BinWorker& worker)

@@ -103,8 +103,8 @@ class BinRunner : private BinShading {
     PassCounters& n = w_.counters();
     const bool conservative = w_.state->raster.conservative;
     TileCoverage coverage = conservative ? TileCoverage(t, std::span(&kPixelCenter, 1), 0, 0, 0, 0)
-                                         : TileCoverage(t, c_.positions, c_.sample_min_x, c_.sample_min_y,
-                                                        c_.sample_max_x, c_.sample_max_y);
+                                         : TileCoverage(t, c_.coverage_positions, c_.sample_min_x,
+                                                        c_.sample_min_y, c_.sample_max_x, c_.sample_max_y);
     const int left = std::max<int>(t.min_x, bin_x_) & ~7, right = std::min<int>(t.max_x, bin_x_ + kBinPx - 1);
     const int top = std::max<int>(t.min_y, bin_y_) & ~7, bottom = std::min<int>(t.max_y, bin_y_ + kBinPx - 1);
     SampleMasks masks;
@@ -117,7 +117,11 @@ class BinRunner : private BinShading {
         if (coarse == CoarseResult::killed) continue;
         if (!cover(t, coverage, x, y, masks, n)) continue;
         if (keeps_primitive_masks_) primitive_masks_ = masks;
+        if (follows_map_ && !w_.late_z) hide_tile(t, x, y, masks.lanes);
+        if (positions_ != samples_) masks.keep(~std::uint64_t{0}, 0, samples_, positions_);
+        if (masks.count == 0) continue;  // covers further positions alone: nothing to name
         if (!w_.late_z && !test_early(t, plane, x, y, coarse, masks, n)) continue;
+        if (follows_map_ && !w_.late_z) insert_tile(t, x, y, masks.lanes, primitive_masks_.lanes);
         if (w_.early_reject && !reject_early(t, plane, x, y, coarse, masks, n)) continue;
         if (w_.program != nullptr) append_tile(&t, &segment, &item, x, y, masks, n);
       }
@@ -128,19 +132,19 @@ class BinRunner : private BinShading {
              PassCounters& n) {
     if (coverage.covers_whole_tile()) {
       masks.start();
-      for (int s = 0; s < samples_; ++s) masks.set(static_cast<std::size_t>(s), ~std::uint64_t{0});
+      for (int s = 0; s < positions_; ++s) masks.set(static_cast<std::size_t>(s), ~std::uint64_t{0});
     } else {
       coverage.masks(masks);
       if (w_.state->raster.conservative) {  // a touched pixel counts as covered at all of its samples
         masks.start();
-        for (int s = 0; s < samples_; ++s) masks.set(static_cast<std::size_t>(s), masks.lanes[0]);
+        for (int s = 0; s < positions_; ++s) masks.set(static_cast<std::size_t>(s), masks.lanes[0]);
       }
     }
     // Grown edges meet far beyond a sharp corner: the bounds end it.
     if (w_.state->raster.conservative)
-      masks.keep(lanes_within(t.min_x - x, t.min_y - y, t.max_x - x, t.max_y - y), 0, samples_, samples_);
+      masks.keep(lanes_within(t.min_x - x, t.min_y - y, t.max_x - x, t.max_y - y), 0, positions_, positions_);
     if (x + kBlockPx > c_.width || y + kBlockPx > c_.height)
-      masks.keep(lanes_inside(x, y), 0, samples_, samples_);
+      masks.keep(lanes_inside(x, y), 0, positions_, positions_);
     n.raster.covered_samples += masks.count;
     return masks.count != 0;
   }

@@ -38,9 +38,10 @@ class BinShading : protected BinColor {
     FragmentBatch& batch = w_.sample_batch;
     start_tile(batch, t, segment, item, x, y);
     const bool centroid = w_.state->raster.centroid;
-    if (centroid) set_lane_coverage(primitive_masks_.lanes, batch.primitive_coverage);
+    if (centroid) set_lane_coverage(primitive_masks_.lanes, positions_, batch.primitive_coverage);
     if (w_.program->reads_coverage)
-      set_lane_coverage(w_.state->coverage.post_depth ? masks.lanes : primitive_masks_.lanes, batch.coverage);
+      set_lane_coverage(w_.state->coverage.post_depth ? masks.lanes : primitive_masks_.lanes, samples_,
+                        batch.coverage);
     if (w_.state->raster.sample_rate && samples_ > 1) {
       for (int s = 0; s < samples_; ++s) {
         SampleMasks kept = masks;
@@ -51,8 +52,8 @@ class BinShading : protected BinColor {
     batch.sample_index = -1;
     batch.active_lanes = masks.any_lane;
     batch.valid_lanes = quads;
-    set_up_tile(batch, x, y, centroid ? AttributeLocation::centroid : AttributeLocation::center, c_.positions,
-                0);
+    set_up_tile(batch, x, y, centroid ? AttributeLocation::centroid : AttributeLocation::center,
+                c_.coverage_positions, 0);
     shade(batch, false);
     if (w_.program->writes_depth && w_.state->depth.write) write_full_screen_depth(batch, block);
     add_tile_heat(batch, x, y);
@@ -62,6 +63,7 @@ class BinShading : protected BinColor {
     apply_output_mask(batch, 0, samples_, kept);
     kept.keep(~batch.discarded_lanes, 0, samples_, samples_);
     if (w_.late_z) test_tile_late(t, x, y, kept);
+    if (follows_map_ && w_.late_z) insert_tile(*t, x, y, kept.lanes, primitive_masks_.lanes);
     write_tile(batch, block, kept.lanes, 0, samples_);
   }
 
@@ -108,10 +110,11 @@ class BinShading : protected BinColor {
     }
   }
 
-  void set_lane_coverage(const std::uint64_t* masks, std::array<std::uint32_t, kBatchLanes>& coverage) const {
+  static void set_lane_coverage(const std::uint64_t* masks, int count,
+                                std::array<std::uint32_t, kBatchLanes>& coverage) {
     for (int first = 0; first < kBlockLanes; first += kVectorLanes) {
       LaneI bits(0);
-      for (int s = 0; s < samples_; ++s)
+      for (int s = 0; s < count; ++s)
         bits = bits |
                select(mask_from_bits(masks[s], first), LaneI(static_cast<std::int32_t>(1u << s)), LaneI(0));
       store(bits, reinterpret_cast<std::int32_t*>(coverage.data()) + first);
@@ -169,7 +172,7 @@ class BinShading : protected BinColor {
     for (int s = 0; s < samples_; ++s)
       w_.samples[q].masks[s] = static_cast<std::uint8_t>(masks[s] >> (4 * quad) & 15);
     if (keeps_primitive_masks_)
-      for (int s = 0; s < samples_; ++s)
+      for (int s = 0; s < positions_; ++s)
         w_.primitive_samples[q].masks[s] =
             static_cast<std::uint8_t>(primitive_masks_.lanes[s] >> (4 * quad) & 15);
     if (t == nullptr) return;
@@ -214,7 +217,7 @@ class BinShading : protected BinColor {
     FragmentBatch& batch = w_.batch;
     for (std::size_t q = 0; q < static_cast<std::size_t>(batch.quad_count); ++q) {
       if (w_.state->raster.centroid)
-        lane_coverage(w_.primitive_samples[q], samples_, batch.primitive_coverage.data() + 4 * q);
+        lane_coverage(w_.primitive_samples[q], positions_, batch.primitive_coverage.data() + 4 * q);
       if (w_.program->reads_coverage)
         lane_coverage(w_.state->coverage.post_depth ? w_.samples[q] : w_.primitive_samples[q], samples_,
                       batch.coverage.data() + 4 * q);
@@ -225,12 +228,14 @@ class BinShading : protected BinColor {
     FragmentBatch& batch = w_.batch;
     const AttributeLocation location =
         w_.state->raster.centroid ? AttributeLocation::centroid : AttributeLocation::center;
-    for (int q = 0; q < batch.quad_count; ++q) set_up_quad(batch, q, location, c_.positions, 0);
+    for (int q = 0; q < batch.quad_count; ++q) set_up_quad(batch, q, location, c_.coverage_positions, 0);
     shade(batch, false);
     add_heat(batch);
     if (masks_output_) mask_quads();
     if (batch.discarded_lanes != 0) drop_discarded(batch.discarded_lanes);
     if (w_.late_z) test_late();
+    if (follows_map_ && w_.late_z)
+      for (std::size_t q = 0; q < static_cast<std::size_t>(batch.quad_count); ++q) insert_quad(q);
     write_color(batch, w_.block.data(), w_.quad_in_block.data(), 0, samples_);
   }
 
@@ -361,7 +366,8 @@ class BinShading : protected BinColor {
     const CoverageState& state = w_.state->coverage;
     const bool reads_primitive = w_.program != nullptr && w_.program->reads_coverage && !state.post_depth;
     const bool writes_mask = w_.program != nullptr && w_.program->writes_mask;
-    keeps_primitive_masks_ = w_.state->raster.centroid || reads_primitive;
+    start_coverage_map();
+    keeps_primitive_masks_ = w_.state->raster.centroid || reads_primitive || follows_map_;
     masks_output_ = writes_mask || (w_.program != nullptr && state.alpha_to_coverage);
     if (masks_output_ && !writes_mask)
       alpha_ = AlphaCoverage(samples_, layer_, static_cast<int>(c_.viewports.size()), state.alpha_dither);

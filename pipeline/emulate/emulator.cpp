@@ -83,8 +83,8 @@ class FrameRunner {
     for (std::size_t i = 0; i < images_.size(); ++i) {
       if (compiled_.images[i].first_pass != position) continue;
       const ImageDesc& desc = graph_.images()[i];
-      images_[i] =
-          std::make_unique<GpuImage>(desc.format, desc.width, desc.height, desc.samples, desc.layers);
+      images_[i] = std::make_unique<GpuImage>(desc.format, desc.width, desc.height, desc.samples, desc.layers,
+                                              desc.coverage_samples);
       if (const RawImage* contents = graph_.contents({static_cast<int>(i)}))
         upload_image(*contents, *images_[i]);
     }
@@ -141,6 +141,7 @@ class FrameRunner {
       c.depth_bytes = info(c.depth->format).bytes;
     }
     for (const ImageId id : pass.color) c.color.push_back(&image(id));
+    if (pass.coverage_samples > 0) c.coverage_map = c.color.front();
     set_viewports(pass, c);
     bind(pass, c.resources);
     set_positions(pass, c);
@@ -151,6 +152,11 @@ class FrameRunner {
 
   void bind(const Pass& pass, ResourceView& resources) {
     resources.materials = materials_.views();
+    if (pass.depth_planes) {  // before texels are asked for: that ends the planes' use for tests
+      GpuImage& depth = image(pass.depth_planes);
+      planes_ = {&depth, held_planes(depth)};
+      resources.depth_planes = &planes_;
+    }
     for (std::size_t i = 0; i < pass.sampled.size(); ++i) {
       image(pass.sampled[i]).use_all(options_.jobs);
       resources.images[i] = &image(pass.sampled[i]);
@@ -167,6 +173,12 @@ class FrameRunner {
       resources.buffers[i] = words.data();
       resources.buffer_words[i] = words.size();
     }
+  }
+
+  /// A tile that nothing was drawn into is the plane of the clear value.
+  static std::vector<std::uint8_t> held_planes(GpuImage& depth) {
+    for (int block = 0; block < static_cast<int>(depth.cleared.size()); ++block) depth.use_planes(block);
+    return depth.plane_count;
   }
 
   /// Planes were written for other sample positions: only their samples still hold (techniques 9.1).
@@ -188,14 +200,22 @@ class FrameRunner {
     c.band = guard_band(pass.width, pass.height, (largest + kSubpixelUnits - 1) / kSubpixelUnits);
   }
 
-  static void set_positions(const Pass& pass, PassContext& c) {
+  void set_positions(const Pass& pass, PassContext& c) {
     c.positions = standard_sample_positions(pass.samples);
     const PipelineState& state = pass.batches.empty() ? pass.state : pass.batches.front().state;
     if (!state.raster.sample_positions.empty()) c.positions = state.raster.sample_positions;
-    const auto [left, right] = std::minmax_element(
-        c.positions.begin(), c.positions.end(), [](SamplePosition a, SamplePosition b) { return a.x < b.x; });
-    const auto [top, bottom] = std::minmax_element(
-        c.positions.begin(), c.positions.end(), [](SamplePosition a, SamplePosition b) { return a.y < b.y; });
+    c.coverage_positions = c.positions;
+    if (pass.coverage_samples > 0) {
+      coverage_positions_ = coverage_positions(pass.samples, pass.coverage_samples);
+      c.coverage_positions = coverage_positions_;
+      c.positions = c.coverage_positions.first(static_cast<std::size_t>(pass.samples));
+    }
+    const auto [left, right] =
+        std::minmax_element(c.coverage_positions.begin(), c.coverage_positions.end(),
+                            [](SamplePosition a, SamplePosition b) { return a.x < b.x; });
+    const auto [top, bottom] =
+        std::minmax_element(c.coverage_positions.begin(), c.coverage_positions.end(),
+                            [](SamplePosition a, SamplePosition b) { return a.y < b.y; });
     c.sample_min_x = left->x;
     c.sample_max_x = right->x;
     c.sample_min_y = top->y;
@@ -332,7 +352,8 @@ class FrameRunner {
         std::vector<std::uint32_t>(static_cast<std::size_t>(pass.compute->group_memory_bytes) / 4 + 1));
     std::vector<std::unique_ptr<GroupBatch>> batches;
     for (std::size_t i = 0; i < workers_.size(); ++i) batches.push_back(std::make_unique<GroupBatch>());
-    parallel_for(groups, options_.jobs, [&](std::size_t group, int worker) {
+    const int jobs = pass.compute->ordered_storage ? 1 : options_.jobs;
+    parallel_for(groups, jobs, [&](std::size_t group, int worker) {
       const auto w = static_cast<std::size_t>(worker);
       GroupBatch& batch = *batches[w];
       if (!pass.compute->leaves_group_memory_zero) std::fill(memory[w].begin(), memory[w].end(), 0);
@@ -393,7 +414,9 @@ class FrameRunner {
   MaterialViews materials_;
   std::vector<std::unique_ptr<GpuImage>> images_;
   std::vector<std::vector<std::uint32_t>> buffers_;
-  std::vector<char> cleared_;  ///< images that nothing was drawn into since their clear
+  DepthPlaneView planes_;                           ///< of the pass at hand
+  std::vector<SamplePosition> coverage_positions_;  ///< likewise
+  std::vector<char> cleared_;                       ///< images that nothing was drawn into since their clear
   std::vector<BinWorker> workers_;
   int heat_blocks_x_;
   std::vector<std::uint32_t> heat_;

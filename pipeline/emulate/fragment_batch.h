@@ -37,6 +37,12 @@ struct MaterialView {
   const TextureView* occlusion_texture = nullptr;
 };
 
+/// A depth image's tiles as planes, where they are held so. Reading texels leaves the planes in place.
+struct DepthPlaneView {
+  const GpuImage* image = nullptr;        ///< null: the pass reads none
+  std::vector<std::uint8_t> plane_count;  ///< of each tile; 0: not held as planes
+};
+
 /// Image and buffer slots of a pass.
 struct ResourceView {
   std::array<const GpuImage*, kMaxImageSlots> images{};
@@ -45,7 +51,8 @@ struct ResourceView {
   std::array<Format, kMaxColorTargets> target_formats{};  ///< as they store to them
   std::array<std::uint32_t*, kMaxBufferSlots> buffers{};
   std::array<std::uint64_t, kMaxBufferSlots> buffer_words{};
-  const MaterialView* materials = nullptr;                       ///< of the scene, in its order
+  const MaterialView* materials = nullptr;  ///< of the scene, in its order
+  const DepthPlaneView* depth_planes = nullptr;
   std::array<std::uint32_t, kMaxImageSlots> image_first_line{};  ///< after the lines of the textures
   AccessTracker* tracker = nullptr;                              ///< of the worker
 };
@@ -134,6 +141,13 @@ struct VertexBatch {
   alignas(64) float varyings[kMaxVaryings][kBatchLanes];
 };
 
+/// An addition of floats by an atomic unit: it rounds, so its place among the others is kept.
+struct FloatAdd {
+  int lane = 0, slot = 0;
+  std::int32_t index = 0;
+  float value = 0.0f;
+};
+
 /// A compute group. Its program runs phase after phase over all of the group's invocations; what would be a
 /// barrier in a shader is the end of a phase here.
 struct GroupBatch {
@@ -145,7 +159,8 @@ struct GroupBatch {
   const MaterialView* material = nullptr;  ///< the program chooses one of the resources'
   const ComputeProgram* program = nullptr;
   PassCounters* counters = nullptr;
-  BlockTrips blocks;  ///< of the 64 invocations of the current wave
+  BlockTrips blocks;                 ///< of the 64 invocations of the current wave
+  std::vector<FloatAdd> float_adds;  ///< of the current wave; they take effect when it ends, lane by lane
 };
 
 }  // namespace hwsim::pipeline

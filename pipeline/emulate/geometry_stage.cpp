@@ -21,12 +21,13 @@ void load_batch(const VertexSource& source, std::span<const std::uint32_t> indic
 /// Sets up what one lane emitted; its vertices get places of their own among the item's.
 class LaneOutput {
  public:
-  LaneOutput(const PassContext& context, GeometryItem& item, const GeometryProgram& program)
+  LaneOutput(const PassContext& context, GeometryItem& item, const DrawBatch& draws)
       : band_(guard_band(context.width, context.height)),
         context_(context),
         item_(item),
-        program_(program),
-        stride_(static_cast<std::size_t>(program.varying_scalars)) {}
+        program_(*draws.geometry),
+        tessellated_(draws.tessellated_points),
+        stride_(static_cast<std::size_t>(program_.varying_scalars)) {}
 
   void add(const GeometryBatch& batch, std::size_t lane, std::uint32_t primitive, PassCounters& n) {
     const auto count = static_cast<std::size_t>(batch.vertex_count[lane]);
@@ -46,7 +47,7 @@ class LaneOutput {
                                          : add_strips(setup, batch, lane, count);
     n.stats.geometry_shader_primitives += primitives;
     n.gs.output_vertices += count;
-    n.gs.output_bytes += count * batch.scalars_per_vertex() * kScalarBytes;
+    if (!tessellated_) n.gs.output_bytes += count * batch.scalars_per_vertex() * kScalarBytes;
   }
 
  private:
@@ -73,6 +74,7 @@ class LaneOutput {
   const PassContext& context_;
   GeometryItem& item_;
   const GeometryProgram& program_;
+  bool tessellated_;
   std::size_t stride_;
   std::vector<ShadedVertex> vertices_;
   std::vector<float> varyings_;
@@ -89,7 +91,7 @@ void run_geometry_shader_stage(const PassContext& context, const VertexSource& s
   batch.height_px = context.height;
   batch.mirrored = draw.mirrored;
   batch.material = draw.material;
-  LaneOutput output(context, item, program);
+  LaneOutput output(context, item, *draw.batch);
   std::uint32_t next = 0;
   while (next < item.primitive_count) {
     const std::uint32_t primitive = draw.first_primitive + item.first_primitive + next;

@@ -10,8 +10,8 @@
 namespace hwsim::pipeline {
 using namespace HWY_NAMESPACE;  // the scalar lane of the static target
 
-GpuImage::GpuImage(Format f, int w, int h, int s, int array_layers)
-    : format(f), width(w), height(h), samples(s), layers(array_layers) {
+GpuImage::GpuImage(Format f, int w, int h, int s, int array_layers, int coverage)
+    : format(f), width(w), height(h), samples(s), layers(array_layers), coverage_samples(coverage) {
   const FormatInfo& format_info = info(f);
   words = format_info.is_depth ? 1 : (format_info.bytes + 3) / 4;
   if (format_info.is_integer) words = format_info.channels;
@@ -34,6 +34,10 @@ GpuImage::GpuImage(Format f, int w, int h, int s, int array_layers)
     double_lanes.resize(blocks);
     second_color.resize(blocks * static_cast<std::size_t>(s));
     stale_lanes.resize(blocks);
+  }
+  if (coverage_samples > 0) {
+    coverage_map.resize(blocks * kBlockLanes);
+    coverage_whole.resize(blocks, ~std::uint64_t{0});
   }
   unsaved.resize(blocks);
   if (format_info.has_stencil) stencil.resize(blocks * static_cast<std::size_t>(s * kBlockLanes));

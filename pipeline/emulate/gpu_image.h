@@ -51,6 +51,10 @@ struct GpuImage {
   std::vector<std::uint64_t> second_color;  ///< of each sample: pixels of double_lanes that hold the second
   std::vector<std::uint64_t> stale_lanes;   ///< single pixels of which only sample 0 has been written
 
+  int coverage_samples = 0;                   ///< positions of the coverage map (emulate/coverage_map.h)
+  std::vector<std::uint64_t> coverage_map;    ///< of each pixel, tile by tile
+  std::vector<std::uint64_t> coverage_whole;  ///< of each tile: pixels that one fragment covers everywhere
+
   // Depth formats: tiles held as planes; their texels are stale.
   std::vector<std::uint8_t> plane_count;        ///< of each tile; 0: the texels hold the depth
   std::vector<DepthPlane> planes;               ///< kMaxDepthPlanes a tile
@@ -67,7 +71,7 @@ struct GpuImage {
   std::uint8_t clear_stencil = 0;
 
   GpuImage() = default;
-  GpuImage(Format f, int w, int h, int s, int array_layers = 1);
+  GpuImage(Format f, int w, int h, int s, int array_layers = 1, int coverage = 0);
 
   /// Before a tile's texels are read or written.
   void use(int block_index) {

@@ -20,6 +20,9 @@ struct PassContext {
   int width = 0, height = 0, samples = 1;
   int bins_x = 0, bins_y = 0;
   std::span<const SamplePosition> positions;
+  /// Where coverage is found: `positions`, and in a pass with a coverage map those behind them.
+  std::span<const SamplePosition> coverage_positions;
+  GpuImage* coverage_map = nullptr;          ///< the color image that has one
   std::span<const ViewportShift> viewports;  ///< at least one
   GuardBand band;
   int sample_min_x = 0, sample_min_y = 0, sample_max_x = 0, sample_max_y = 0;

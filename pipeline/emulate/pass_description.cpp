@@ -16,7 +16,7 @@ PassWork describe(const FrameGraph& graph, const CompiledGraph& compiled, int po
   work.kind = pass.kind;
   work.width_px = pass.width;
   work.height_px = pass.height;
-  work.raster_samples = pass.samples;
+  work.raster_samples = std::max(pass.samples, pass.coverage_samples);
   work.barrier_before = compiled.barrier_before[in_order] != 0;
   work.source_in_tile = resolves_from_tile(graph, compiled, position);
   if (pass.depth) {

@@ -7,6 +7,8 @@
 #include "pipeline/base/parallel.h"
 #include "pipeline/depth/depth_format.h"
 #include "pipeline/emulate/color_traffic.h"
+#include "pipeline/emulate/coverage_map.h"
+#include "pipeline/graph/frame_graph.h"
 #include "pipeline/shade/texture_view.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -43,6 +45,33 @@ HWY_INLINE Vec4<LaneF> sum_samples(const GpuImage& from, const std::int32_t* sou
   return partial[level];
 }
 
+/// Each color with the positions that name its sample (emulate/coverage_map.h).
+HWY_INLINE Vec4<LaneF> mean_of_positions(const GpuImage& from, const std::int32_t* source, int block,
+                                         int first) {
+  HWY_ALIGN float weight[kMaxSamples][kVectorLanes] = {};
+  HWY_ALIGN float valid[kVectorLanes] = {};
+  const std::uint64_t whole = from.coverage_whole[static_cast<std::size_t>(block)];
+  for (int i = 0; i < kVectorLanes; ++i) {
+    const auto lane = static_cast<std::size_t>(first + i);
+    const std::uint64_t stored = from.coverage_map[static_cast<std::size_t>(block) * kBlockLanes + lane];
+    const CoverageWord map = (whole >> lane & 1) != 0 ? CoverageWord() : CoverageWord(stored);
+    for (int q = 0; q < from.coverage_samples; ++q) {
+      const std::uint32_t sample = q < from.samples ? static_cast<std::uint32_t>(q) : map.at(q);
+      if (sample == kNoSample) continue;
+      weight[sample][i] += 1.0f;
+      valid[i] += 1.0f;
+    }
+  }
+  Vec4<LaneF> sum{LaneF(0.0f), LaneF(0.0f), LaneF(0.0f), LaneF(0.0f)};
+  for (int s = 0; s < from.samples; ++s) {
+    LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
+    for (int w = 0; w < from.words; ++w) words[w] = load(source + (s * from.words + w) * kBlockLanes + first);
+    const Vec4<LaneF> c = decode_texel<LaneF, LaneI>(from.format, words, srgb_decode_table().data());
+    sum = sum + c * load(weight[s]);
+  }
+  return sum * (LaneF(1.0f) / load(valid));  // never 0: each sample's own position names it
+}
+
 void resolve_block(const GpuImage& from, GpuImage& to, int block, std::uint64_t single) {
   const auto* source = reinterpret_cast<const std::int32_t*>(from.block(block));
   auto* target = reinterpret_cast<std::int32_t*>(to.block(block));
@@ -54,6 +83,8 @@ void resolve_block(const GpuImage& from, GpuImage& to, int block, std::uint64_t 
       LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
       for (int w = 0; w < from.words; ++w) words[w] = load(source + w * kBlockLanes + first);
       mean = decode_texel<LaneF, LaneI>(from.format, words, srgb);
+    } else if (from.coverage_samples > 0) {
+      mean = mean_of_positions(from, source, block, first);
     } else {
       mean = sum_samples(from, source, first) * weight;
     }
@@ -144,6 +175,7 @@ void clear_image(GpuImage& image, const Pass& pass) {
     std::fill(image.depth_max.begin(), image.depth_max.end(), bits);
     return;
   }
+  std::fill(image.coverage_whole.begin(), image.coverage_whole.end(), ~std::uint64_t{0});
   std::fill(image.single_lanes.begin(), image.single_lanes.end(), ~std::uint64_t{0});
   std::fill(image.double_lanes.begin(), image.double_lanes.end(), 0);
   std::fill(image.stale_lanes.begin(), image.stale_lanes.end(), 0);
@@ -202,6 +234,10 @@ std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* sourc
   if (source != nullptr && source->tracks_colors())
     for (int block = 0; block < source->blocks_x * source->blocks_y * source->layers; ++block)
       count_pixel_colors(kReadPixels, *source, block, read);
+  const std::uint64_t map_bytes =  // of pixels that hold one color nothing more is read
+      source == nullptr ? 0
+                        : coverage_map_bytes(source->samples, source->coverage_samples) *
+                              (read.read_double_pixels + read.read_mixed_pixels);
   const auto band = [&](std::uint64_t amount, std::uint64_t i) {
     return amount * (i + 1) / kBands - amount * i / kBands;
   };
@@ -225,6 +261,7 @@ std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* sourc
           band(samples_read * info(source->format).bytes, i);
       (depth ? n.mem.depth_write_bytes : n.mem.color_write_bytes) += band(pixels * samples * bytes, i);
       n.resolve.read_samples += band(samples_read, i);
+      n.mem.other_read_bytes += band(map_bytes, i);
       for (const PixelCounter counter : kReadPixels) n.crop.*counter += band(read.*counter, i);
       n.resolve.written_pixels += band(pixels, i);
       if (depth) continue;  // each tile moves once

@@ -1,14 +1,23 @@
 #include "pipeline/graph/frame_graph.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace hwsim::pipeline {
 
 std::uint64_t allocated_bytes(const ImageDesc& image) {
-  return static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height) *
-         static_cast<std::uint64_t>(image.samples) * static_cast<std::uint64_t>(image.layers) *
-         info(image.format).bytes;
+  const std::uint64_t pixels = static_cast<std::uint64_t>(image.width) *
+                               static_cast<std::uint64_t>(image.height) *
+                               static_cast<std::uint64_t>(image.layers);
+  return pixels * (static_cast<std::uint64_t>(image.samples) * info(image.format).bytes +
+                   coverage_map_bytes(image.samples, image.coverage_samples));
+}
+
+std::uint64_t coverage_map_bytes(int samples, int coverage_samples) {
+  if (coverage_samples == 0) return 0;
+  const int bits = std::bit_width(static_cast<unsigned>(samples));  // of 0..samples
+  return static_cast<std::uint64_t>(coverage_samples * bits + 7) / 8;
 }
 
 std::uint64_t allocated_bytes(const BufferDesc& buffer) { return buffer.contents ? 0 : 4 * buffer.words; }

@@ -37,6 +37,9 @@ struct ImageDesc {
   int height = 0;
   int samples = 1;
   int layers = 1;  ///< of an array image; shaders read sample s of layer l as sample l * samples + s
+  /// Color: positions of a pixel that name one of its samples as theirs, in a map beside the texels (CSAA,
+  /// EQAA; techniques 1.6). More than `samples`; 0: no map.
+  int coverage_samples = 0;
 };
 struct BufferDesc {
   std::string name;
@@ -52,6 +55,8 @@ bool same_bits(Format a, Format b);
 /// Bytes as allocated: width * height * samples * layers * bytes per element. No padding: the papers' figures
 /// have none.
 std::uint64_t allocated_bytes(const ImageDesc& image);
+/// Of a pixel's coverage map: for each position the number of a sample, or none. 0 without one.
+std::uint64_t coverage_map_bytes(int samples, int coverage_samples);
 std::uint64_t allocated_bytes(const BufferDesc& buffer);
 
 /// Triangles of a mesh part chosen when the graph is built, three indices into the mesh's vertices each.
@@ -79,6 +84,9 @@ struct DrawBatch {
   std::shared_ptr<const void> geometry_uniforms;
   std::shared_ptr<const void> fragment_uniforms;
   std::vector<DrawCall> draws;
+  /// The geometry program's points come from a tessellator (GpuFeatures::tessellator_points): none of them
+  /// passes through a buffer, nor is their number limited.
+  bool tessellated_points = false;
 
   /// What the rasterizer interpolates.
   int raster_scalars() const {
@@ -94,6 +102,9 @@ struct Pass {
   PassKind kind = PassKind::draw;
   int width = 0, height = 0;  ///< viewport in pixels
   int samples = 1;            ///< raster samples
+  int coverage_samples = 0;   ///< positions at which coverage is found, the first `samples` of which have
+                              ///< depth and color (ImageDesc::coverage_samples); 0: `samples`
+  bool drop_orphans = false;  ///< see emulate/coverage_map.h
   /// Viewport multicast (techniques 1.4): vertices are shaded once, and every primitive is rasterized into
   /// layer l of the attachments under viewport l. Empty: one viewport, and attachments of one layer.
   std::vector<ViewportShift> viewports;
@@ -105,6 +116,9 @@ struct Pass {
   std::vector<Format> views;      ///< as which shaders read `sampled`; missing or none: the image's format
   std::vector<BufferId> storage;  ///< buffers that shaders read or write, in the order of their slots
   std::uint64_t storage_written = 0;  ///< bit i: storage[i] is written
+  /// Compute: one of `sampled`, a depth image whose tiles the program may read as the planes that they are
+  /// compressed to (GpuFeatures::compressed_depth_read).
+  ImageId depth_planes;
 
   std::vector<DrawBatch> batches;  // draw
   PipelineState state;             // full_screen

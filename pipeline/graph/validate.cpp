@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "pipeline/emulate/coverage_map.h"
 #include "pipeline/emulate/fragment_batch.h"
 #include "pipeline/raster/triangle.h"
 
@@ -48,6 +49,10 @@ class Validator {
     if (image.layers < 1 || image.layers > kMaxLayers)
       fail("G001", "image " + text(image) + " must have 1 to " + std::to_string(kMaxLayers) + " layers");
     const int s = image.samples;
+    const bool said = std::find(refused_samples_.begin(), refused_samples_.end(), s) != refused_samples_.end();
+    const bool refused = s < 1 || s > kMaxSamples || (s & (s - 1)) != 0 || s > features_.native_msaa_max;
+    if (refused) refused_samples_.push_back(s);
+    if (said) return;  // once for all images of a frame
     if (s < 1 || s > kMaxSamples || (s & (s - 1)) != 0)
       fail("G002", "image " + text(image) + " must have 1, 2, 4, 8, 16 or 32 samples");
     else if (s > features_.native_msaa_max)
@@ -55,6 +60,45 @@ class Validator {
            "image " + text(image) + " needs " + std::to_string(s) + " samples, this GPU has " +
                std::to_string(features_.native_msaa_max) + " (gpu.features.native_msaa_max)",
            "gpu.features.native_msaa_max = " + std::to_string(s) + " makes it native");
+    if (image.coverage_samples != 0) check_coverage_count("image " + text(image), s, image.coverage_samples);
+  }
+
+  // The features' message for a number of coverage samples.
+  void check_coverage_count(const std::string& what, int samples, int coverage_samples) {
+    const int n = coverage_samples;
+    if (n <= samples || n > kMaxCoveragePositions || (n & (n - 1)) != 0 ||
+        samples > kMaxCoveragePositions / 2)
+      fail("G002", what + " has " + std::to_string(n) + " coverage samples for " + std::to_string(samples) +
+                       " color samples: 4, 8 or 16, and more of them than of color");
+    else if (n > features_.coverage_samples_max)
+      fail("G006",
+           what + " needs " + std::to_string(n) + " coverage samples, this GPU has " +
+               (features_.coverage_samples_max == 0 ? "none"
+                                                    : std::to_string(features_.coverage_samples_max)) +
+               " (gpu.features.coverage_samples_max)",
+           "gpu.features.coverage_samples_max = " + std::to_string(n) + " makes it native");
+  }
+
+  // Coverage beyond the samples goes with forward shading of one color image (techniques 1.6).
+  void check_coverage_map(const Pass& pass) {
+    for (const ImageId id : pass.color)
+      if (const ImageDesc& image = graph_.image(id); image.coverage_samples != pass.coverage_samples)
+        fail("G002", "pass `" + pass.name + "` finds coverage at " + std::to_string(pass.coverage_samples) +
+                         " positions, image " + text(image) + " has a map of " +
+                         std::to_string(image.coverage_samples));
+    if (pass.coverage_samples == 0) return;
+    const auto plain = [](const PipelineState& s) {
+      return !s.raster.conservative && !s.raster.sample_rate && s.raster.sample_positions.empty() &&
+             !s.coverage.override_output && !s.coverage.alpha_to_coverage;
+    };
+    const bool all_plain = std::all_of(pass.batches.begin(), pass.batches.end(),
+                                       [&](const DrawBatch& b) { return plain(b.state); });
+    if (pass.kind != PassKind::draw || pass.color.size() != 1 || !pass.depth || !pass.viewports.empty() ||
+        !all_plain)
+      fail("G010",
+           "pass `" + pass.name + "` finds coverage at more positions than it has samples, and is no plain " +
+               "draw into one color and one depth image",
+           "no sample-rate shading, masks, own positions, conservative raster or several viewports");
   }
 
   void check_contents(ImageId id) {
@@ -121,6 +165,10 @@ class Validator {
       fail("G005",
            "pass `" + pass.name + "` reads image " + text(graph_.image(id)) + " before any pass wrote it",
            "clear it, or order the passes by what they read");
+    if (graph_.image(id).coverage_samples != 0 && pass.kind != PassKind::resolve)
+      fail("G009",
+           "pass `" + pass.name + "` reads image " + text(graph_.image(id)) + ", which has a coverage map",
+           "only a resolve reads the map");
     const bool attached = std::find(pass.color.begin(), pass.color.end(), id) != pass.color.end() ||
                           (pass.depth == id && !pass.depth_read_only);
     if (attached)
@@ -169,6 +217,7 @@ class Validator {
       mark_written(id);
     }
     if (pass.depth) check_depth(pass);
+    check_coverage_map(pass);
     check_stores(pass);
     if (pass.kind == PassKind::full_screen) {
       if (pass.fragment == nullptr)
@@ -261,6 +310,12 @@ class Validator {
       fail("G007", what + "reads " + std::to_string(program.input_scalars) +
                        " varyings, the vertex program writes " +
                        std::to_string(batch.vertex->varying_scalars));
+    if (batch.tessellated_points) {
+      if (program.output != GeometryOutput::points || !features_.tessellator_points)
+        fail("G006", what + "emits points from the tessellator, which this GPU cannot",
+             "gpu.features.tessellator_points = true");
+      return;
+    }
     const int scalars = program.max_vertices * (4 + program.varying_scalars);
     if (scalars > functional_.gs_max_scalars)
       fail("G012",
@@ -344,6 +399,18 @@ class Validator {
 
   void check_compute(const Pass& pass) {
     if (pass.compute == nullptr) fail("G007", "compute pass `" + pass.name + "` has no program");
+    // Of what a program can store, only sums of floats depend on the order of groups.
+    if (pass.compute != nullptr && pass.compute->ordered_storage && !features_.float_atomics)
+      fail("G006", "compute pass `" + pass.name + "` adds floats by atomics, which this GPU cannot",
+           "gpu.features.float_atomics = true");
+    if (pass.depth_planes && !features_.compressed_depth_read)
+      fail("G006", "compute pass `" + pass.name + "` reads compressed depth, which this GPU cannot",
+           "gpu.features.compressed_depth_read = true");
+    if (pass.depth_planes &&
+        (!info(graph_.image(pass.depth_planes).format).is_depth ||
+         std::find(pass.sampled.begin(), pass.sampled.end(), pass.depth_planes) == pass.sampled.end()))
+      fail("G009", "compute pass `" + pass.name + "` reads the planes of image " +
+                       text(graph_.image(pass.depth_planes)) + ", which is no depth image that it samples");
     if (pass.groups_x < 1 || pass.groups_y < 1)
       fail("G001", "compute pass `" + pass.name + "` has no groups");
     if (pass.targets.size() > kMaxColorTargets)
@@ -406,6 +473,7 @@ class Validator {
   const GpuFeatures& features_;
   const FunctionalConfig& functional_;
   std::vector<char> written_;
+  std::vector<int> refused_samples_;  ///< sample counts of images that were reported
   std::vector<Diagnostic> errors_;
 };
 

@@ -1,5 +1,6 @@
 #include "pipeline/raster/sample_pattern.h"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 #include <string>
@@ -62,6 +63,23 @@ std::span<const SamplePosition> standard_sample_positions(int samples) {
     default:
       throw std::invalid_argument("no standard pattern of " + std::to_string(samples) + " samples");
   }
+}
+
+std::vector<SamplePosition> coverage_positions(int samples, int positions) {
+  const std::span<const P> all = standard_sample_positions(positions);
+  std::vector<P> left(all.begin(), all.end()), ordered;
+  for (const P wanted : standard_sample_positions(samples)) {
+    const auto distance2 = [&](P p) {
+      const int dx = p.x - wanted.x, dy = p.y - wanted.y;
+      return dx * dx + dy * dy;
+    };
+    const auto nearest =
+        std::min_element(left.begin(), left.end(), [&](P a, P b) { return distance2(a) < distance2(b); });
+    ordered.push_back(*nearest);
+    left.erase(nearest);
+  }
+  ordered.insert(ordered.end(), left.begin(), left.end());
+  return ordered;
 }
 
 MulticastPattern multicast_pattern(int samples) {

@@ -13,6 +13,11 @@ inline constexpr int kMaxSamples = 32;
 /// counts.
 std::span<const SamplePosition> standard_sample_positions(int samples);
 
+/// The standard positions for `positions`, so ordered that the first `samples` lie as the standard pattern of
+/// so many does: each takes the nearest of those left. Their own order starts at the pixel's center. Throws
+/// as above.
+std::vector<SamplePosition> coverage_positions(int samples, int positions);
+
 /// How passes of eight samples reach more (techniques 1.4): every layer has the same positions, squeezed into
 /// a part of the pixel, under a viewport of its own.
 struct MulticastPattern {

@@ -1,5 +1,7 @@
 // Storage buffers of a pass, word by word, lanes in order: shared by fragment and compute contexts. An index
 // outside the buffer reads 0 and writes nothing, as robust buffer access has it. Per-target include guard.
+#include <cstring>
+
 #include "pipeline/emulate/fragment_batch.h"
 #include "pipeline/shade/lanes-inl.h"
 
@@ -62,6 +64,16 @@ class BufferAccess {
     return change_words(index, value, mask, [](std::uint32_t* word, std::uint32_t by) {
       return __atomic_fetch_add(word, by, __ATOMIC_RELAXED);
     });
+  }
+  /// One lane's addition to a word that is a float.
+  void add_float(std::int32_t index, float value) const {
+    if (!holds(index)) return;
+    float sum;
+    std::memcpy(&sum, words_ + index, sizeof(sum));
+    sum += value;
+    std::memcpy(words_ + index, &sum, sizeof(sum));
+    note(0, index, 4, 4);
+    tracker_->count_atomic(slot_, index);
   }
   /// Likewise, putting the values in their place.
   LaneI exchange_words(LaneI index, LaneI value, LaneM mask) const {

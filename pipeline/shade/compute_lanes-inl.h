@@ -105,6 +105,54 @@ class ComputeLanes : public LaneFlow {
     return BufferAccess(*group_.resources, slot, first_).add_words(index, value, mask & live_);
   }
 
+  /// Atomic addition of floats, whose order shows: it takes effect when the wave ends, lane by lane, in the
+  /// order of the calls. A pass whose program uses it runs its groups one after another.
+  void atomic_add_float(int slot, I index, F value, M mask) {
+    group_.counters->mem.storage_read_bytes += word_bytes(mask & live_);
+    group_.counters->mem.storage_write_bytes += word_bytes(mask & live_);
+    HWY_ALIGN std::int32_t at[kVectorLanes];
+    HWY_ALIGN float by[kVectorLanes];
+    store(index, at);
+    store(value, by);
+    for (std::uint32_t bits = mask_bits(mask & live_); bits != 0; bits &= bits - 1) {
+      const int lane = __builtin_ctz(bits);
+      group_.float_adds.push_back({first_ + lane, slot, at[lane], by[lane]});
+    }
+  }
+
+  /// The tile of the wave's pixels, 8x8, as compressed (Pass::depth_planes). Charged once a wave: the planes,
+  /// and the number of its plane for each sample, in pieces of 32 bytes (techniques 9.1).
+  int tile_plane_count() {
+    const DepthPlaneView& view = *group_.resources->depth_planes;
+    const int count = view.plane_count[static_cast<std::size_t>(tile())];
+    if (first_ != 0) return count;
+    const int bits = count <= 1 ? 0 : count == 2 ? 1 : 2;
+    const int bytes = 12 * (1 << bits) + 8 * view.image->samples * bits;
+    const auto pieces = static_cast<std::uint64_t>((bytes + 31) / 32);
+    TexelCounts texels;
+    for (std::uint64_t i = 0; i < 2 * pieces; ++i) texels.add(1, 16);
+    charge_texels(texels, *group_.counters);
+    group_.counters->mem.texture_read_bytes += 32 * pieces;
+    track_tile(pieces);
+    return count;
+  }
+  /// Depth of a plane at (x, y), pixels from the image's corner.
+  F tile_plane_depth(int plane, F x, F y) const {
+    const DepthPlane& p = tile_plane(plane);
+    const F z = (F(p.z.base) + F(p.z.ddy) * (y - F(p.reference_y))) + F(p.z.ddx) * (x - F(p.reference_x));
+    return min(max(z, F(0.0f)), F(1.0f));
+  }
+  /// The plane of a clear depth of 1.
+  bool tile_plane_is_far(int plane) const {
+    const DepthPlane& p = tile_plane(plane);
+    return p.z.base >= 1.0f && p.z.ddx == 0.0f && p.z.ddy == 0.0f;
+  }
+  /// Pixels whose sample lies on the plane.
+  M in_tile_plane(int plane, int sample) const {
+    GpuImage& image = const_cast<GpuImage&>(*group_.resources->depth_planes->image);
+    return mask_from_bits(image.tile_plane_lanes(tile())[plane * image.samples + sample], first_);
+  }
+
   /// Writes texel (x, y) of the pass's target, lanes of `mask` only; coordinates are inside the image.
   void store_image(int target, I x, I y, I sample, const Vec4<F>& color, M mask) {
     GpuImage& image = *group_.resources->targets[static_cast<std::size_t>(target)];
@@ -128,6 +176,27 @@ class ComputeLanes : public LaneFlow {
   }
 
  private:
+  int tile() const {
+    HWY_ALIGN std::int32_t x[kVectorLanes], y[kVectorLanes];
+    store(x_, x);
+    store(y_, y);
+    return group_.resources->depth_planes->image->block_index(x[0], y[0]);
+  }
+  const DepthPlane& tile_plane(int plane) const {
+    const GpuImage& image = *group_.resources->depth_planes->image;
+    return image.planes[static_cast<std::size_t>(tile() * kMaxDepthPlanes + plane)];
+  }
+  /// Where the tile's samples would lie: compression moves fewer bytes and leaves them at their address.
+  void track_tile(std::uint64_t pieces) {
+    for (std::size_t slot = 0; slot < group_.resources->images.size(); ++slot) {
+      if (group_.resources->images[slot] != group_.resources->depth_planes->image) continue;
+      const GpuImage& image = *group_.resources->images[slot];
+      const auto first = group_.resources->image_first_line[slot] +
+                         static_cast<std::uint32_t>(tile() * image.samples * info(image.format).bytes);
+      for (std::uint32_t i = 0; 2 * i < pieces; ++i)
+        group_.resources->tracker->use_if_sampled(0, ReuseStream::texture, first + i, 64, 0);
+    }
+  }
   std::uint8_t* group_bytes() const { return reinterpret_cast<std::uint8_t*>(group_.group_memory); }
   template <class Body>
   HWY_INLINE void for_each_group_byte(I address, I value, M mask, Body&& body) {
@@ -144,11 +213,21 @@ class ComputeLanes : public LaneFlow {
   I x_, y_, sample_;
 };
 
+/// The additions of a wave, lane by lane: no register's width shows.
+inline void add_floats(GroupBatch& group) {
+  std::stable_sort(group.float_adds.begin(), group.float_adds.end(),
+                   [](const FloatAdd& a, const FloatAdd& b) { return a.lane < b.lane; });
+  for (const FloatAdd& add : group.float_adds)
+    BufferAccess(*group.resources, add.slot, add.lane).add_float(add.index, add.value);
+  group.float_adds.clear();
+}
+
 /// Charges the blocks that a wave of `lanes` invocations went through, and starts the next wave.
 inline void end_wave(GroupBatch& group, int lanes) {
   const std::uint64_t valid = lanes == kBatchLanes ? ~std::uint64_t{0} : (std::uint64_t{1} << lanes) - 1;
   account_blocks(group.blocks, group.program->ops, group.program->block_count, valid, *group.counters);
   group.blocks.used = 0;
+  if (!group.float_adds.empty()) add_floats(group);
   group.resources->tracker->end_batch();
 }
 

@@ -100,6 +100,17 @@ class CountFragment {
     ordered_storage_ = true;
     return atomic_add(slot, index, value, mask);
   }
+  void atomic_add_float(int slot, I index, F value, M mask) {
+    ordered_storage_ = true;
+    atomic_add(slot, index, I(CountValue(value)), mask);
+  }
+  int tile_plane_count() {
+    made(OpKind::fetch);
+    return 1;
+  }
+  bool tile_plane_is_far(int) const { return false; }
+  F tile_plane_depth(int, F x, F y) { return F(made(OpKind::alu, made(OpKind::alu, x), y)); }
+  M in_tile_plane(int, int) { return M(made(OpKind::alu)); }
   template <class Body>
   void loop_each(int block, I count, M mask, Body&& body) {
     made(OpKind::output, count, mask);

@@ -84,6 +84,7 @@ struct ComputeProgram {
   int group_width = 16, group_height = 16;  ///< invocations
   int group_memory_bytes = 0;
   bool leaves_group_memory_zero = false;  ///< clears what it used: no group finds another one's values
+  bool ordered_storage = false;           ///< what it stores depends on the order of groups
 };
 
 }  // namespace hwsim::pipeline

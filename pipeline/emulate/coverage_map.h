@@ -1,0 +1,83 @@
+#pragma once
+// Coverage at more positions than a pixel has samples (CSAA, EQAA; techniques 1.6). The first positions are
+// those of the samples, with depth and color of their own; every further one names the sample whose color it
+// has, or none: then the resolve leaves it out. The rule is ours, no vendor published one.
+//
+// A fragment that passes the depth test at some sample takes, in the name of the lowest of these samples, the
+// further positions that it covers, where it wins against the depth of the sample that they name. Positions
+// that named an overwritten sample and that the fragment does not cover are orphans: they follow their
+// fragment to another sample that it still holds (the samples' own entries say which belong together), and
+// name none where it holds none. `drop_orphans`: they name none at once, as techniques 1.6 has it; along a
+// silhouette the later of two surfaces then weighs too much, for the earlier one loses positions.
+#include <bit>
+#include <cstdint>
+
+namespace hwsim::pipeline {
+
+inline constexpr int kMaxCoveragePositions = 16;  ///< of four bits each in a map's word
+inline constexpr std::uint32_t kNoSample = 15;
+
+/// The entries of a pixel. Those of samples name the lowest sample of the same fragment. All zero: one
+/// fragment covers the pixel everywhere.
+class CoverageWord {
+ public:
+  CoverageWord() = default;
+  explicit CoverageWord(std::uint64_t word) : word_(word) {}
+  std::uint32_t at(int position) const { return static_cast<std::uint32_t>(word_ >> (4 * position)) & 15u; }
+  void set(int position, std::uint32_t sample) {
+    word_ = (word_ & ~(std::uint64_t{15} << (4 * position))) | std::uint64_t{sample} << (4 * position);
+  }
+  std::uint64_t word() const { return word_; }
+
+ private:
+  std::uint64_t word_ = 0;
+};
+
+/// Another sample of the fragment of `sample` among those of `left`, or none.
+inline std::uint32_t sample_of_same(const CoverageWord& map, std::uint32_t sample, std::uint32_t left) {
+  for (std::uint32_t rest = left; rest != 0; rest &= rest - 1) {
+    const int k = std::countr_zero(rest);
+    if (map.at(k) == sample) return static_cast<std::uint32_t>(k);
+  }
+  return kNoSample;
+}
+
+/// The map of a pixel after a fragment with the samples `passed` (one or more) and the positions `covered`.
+/// wins(position, sample): whether the fragment at the position lies in front of what the sample holds.
+template <class Wins>
+CoverageWord insert_fragment(CoverageWord map, int samples, int positions, std::uint32_t passed,
+                             std::uint32_t covered, bool drop_orphans, Wins&& wins) {
+  const CoverageWord before = map;
+  const std::uint32_t left = ~passed & ((1u << samples) - 1);
+  const auto own = static_cast<std::uint32_t>(std::countr_zero(passed));
+  const auto is_passed = [&](std::uint32_t s) { return s != kNoSample && (passed >> s & 1u) != 0; };
+  for (int k = 0; k < samples; ++k) {
+    const std::uint32_t named = before.at(k);
+    if (is_passed(static_cast<std::uint32_t>(k)))
+      map.set(k, own);
+    else if (is_passed(named))
+      map.set(k, sample_of_same(before, named, left));
+  }
+  for (int q = samples; q < positions; ++q) {
+    const std::uint32_t named = before.at(q);
+    if ((covered >> q & 1u) == 0) {
+      if (is_passed(named)) map.set(q, drop_orphans ? kNoSample : sample_of_same(before, named, left));
+    } else if (named == kNoSample || is_passed(named) || wins(q, static_cast<int>(named))) {
+      map.set(q, own);
+    }
+  }
+  return map;
+}
+
+/// The map after a fragment that covers further positions alone: it has no color here, and what it hides is
+/// not to be seen.
+template <class Wins>
+CoverageWord hide_positions(CoverageWord map, int samples, int positions, std::uint32_t covered,
+                            Wins&& wins) {
+  for (int q = samples; q < positions; ++q)
+    if ((covered >> q & 1u) != 0 && map.at(q) != kNoSample && wins(q, static_cast<int>(map.at(q))))
+      map.set(q, kNoSample);
+  return map;
+}
+
+}  // namespace hwsim::pipeline

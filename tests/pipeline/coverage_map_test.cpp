@@ -1,0 +1,223 @@
+// Coverage at more positions than samples (techniques 1.6): memory, maps by hand, and pictures against
+// multisampling at all positions.
+#include "pipeline/emulate/coverage_map.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "pipeline/raster/sample_pattern.h"
+#include "support/frames.h"
+
+namespace hwsim::pipeline {
+namespace {
+
+constexpr int kSize = 24;
+
+std::shared_ptr<const Scene> triangles(const std::vector<glm::vec3>& positions) {
+  std::vector<std::uint32_t> indices(positions.size());
+  for (std::uint32_t i = 0; i < indices.size(); ++i) indices[i] = i;
+  return test::share(test::clip_space_scene(positions, indices));
+}
+
+/// The resolved red of the scene's triangles, each in the color of its number. With `coverage`: maps of as
+/// many positions; else `samples` at the positions given, in their order.
+struct Frame {
+  explicit Frame(std::shared_ptr<const Scene> scene, int samples, int coverage, bool drop_orphans = false)
+      : graph(std::move(scene), kSize, kSize) {
+    const ImageId color = graph.add_image({"color", Format::r32_float, kSize, kSize, samples, 1, coverage});
+    const ImageId depth = graph.add_image({"depth", Format::d32_float, kSize, kSize, samples});
+    graph.add_clear("clear", {color, depth});
+    Pass& pass = graph.add_pass("draw", PassKind::draw);
+    pass.samples = samples;
+    pass.coverage_samples = coverage;
+    pass.drop_orphans = drop_orphans;
+    pass.color = {color};
+    pass.depth = depth;
+    DrawBatch batch;
+    batch.vertex = &mesh_position_program();
+    batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>();
+    batch.fragment = &test::primitive_program();
+    batch.state.raster.cull = CullMode::none;
+    batch.state.depth = {true, true, Compare::less};
+    batch.draws = {{0, 0}};
+    pass.batches = {batch};
+    const ImageId out = graph.add_image({"out", Format::r32_float, kSize, kSize, 1});
+    graph.add_resolve("resolve", color, out);
+    graph.set_output(out);
+  }
+  Emulation run() const {
+    GpuFeatures features = test::every_feature();
+    features.coverage_samples_max = 16;
+    return emulate(graph, features, FunctionalConfig{}, {});
+  }
+  FrameGraph graph;
+};
+
+TEST(CoverageMap, TakesWholeBytesOfAPixel) {
+  EXPECT_EQ(coverage_map_bytes(4, 8), 3u);   // of 3 bits
+  EXPECT_EQ(coverage_map_bytes(4, 16), 6u);  // of 3 bits
+  EXPECT_EQ(coverage_map_bytes(8, 16), 8u);  // of 4 bits
+  EXPECT_EQ(coverage_map_bytes(2, 4), 1u);   // of 2 bits
+  EXPECT_EQ(coverage_map_bytes(8, 0), 0u);
+  const ImageDesc image{"color", Format::rgba8_unorm, 100, 10, 4, 1, 16};
+  EXPECT_EQ(allocated_bytes(image), 1000u * (4 * 4 + 6));
+}
+
+TEST(CoverageMap, PositionsAreThoseOfTheStandardPatternInAnOrderOfItsOwn) {
+  for (const auto& [samples, positions] : {std::pair(2, 4), {4, 8}, {4, 16}, {8, 16}}) {
+    std::vector<SamplePosition> ordered = coverage_positions(samples, positions);
+    const std::span<const SamplePosition> all = standard_sample_positions(positions);
+    ASSERT_EQ(ordered.size(), all.size());
+    for (const SamplePosition p : all)
+      EXPECT_EQ(std::count_if(ordered.begin(), ordered.end(),
+                              [&](SamplePosition o) { return o.x == p.x && o.y == p.y; }),
+                1);
+    // The samples do not crowd around the center, as the first of the standard order do.
+    int quarters = 0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(samples); ++k)
+      quarters |= 1 << ((ordered[k].x >= 0 ? 1 : 0) + (ordered[k].y >= 0 ? 2 : 0));
+    EXPECT_GE(std::popcount(static_cast<unsigned>(quarters)), std::min(samples, 3));
+  }
+}
+
+// Four samples, eight positions; the fragments' masks by hand.
+TEST(CoverageMap, FollowsFragmentsByHand) {
+  const auto never = [](int, int) { return false; };
+  const auto always = [](int, int) { return true; };
+  const CoverageWord clear;
+  // Half of the pixel: samples 0, 1, positions 4, 5. The rest stays with a sample of the background.
+  const CoverageWord half = insert_fragment(clear, 4, 8, 0b0011, 0b00110011, false, never);
+  for (const int q : {0, 1, 4, 5}) EXPECT_EQ(half.at(q), 0u) << q;
+  for (const int q : {2, 3, 6, 7}) EXPECT_EQ(half.at(q), 2u) << q;
+  // Dropped instead.
+  const CoverageWord dropped = insert_fragment(clear, 4, 8, 0b0011, 0b00110011, true, never);
+  EXPECT_EQ(dropped.at(6), kNoSample);
+  EXPECT_EQ(dropped.at(4), 0u);
+  // A third surface takes the background's samples: its positions have no color left.
+  const CoverageWord third = insert_fragment(half, 4, 8, 0b1100, 0b01001100, false, never);
+  EXPECT_EQ(third.at(6), 2u);
+  EXPECT_EQ(third.at(7), kNoSample);
+  EXPECT_EQ(third.at(4), 0u) << "hidden, or not covered: as before";
+  // Over what the other sample holds it wins only in front of it.
+  EXPECT_EQ(insert_fragment(half, 4, 8, 0b1000, 0b11111000, false, never).at(4), 0u);
+  EXPECT_EQ(insert_fragment(half, 4, 8, 0b1000, 0b11111000, false, always).at(4), 3u);
+  // Without a sample of its own it hides what it covers.
+  EXPECT_EQ(hide_positions(half, 4, 8, 0b00110000, always).at(4), kNoSample);
+  EXPECT_EQ(hide_positions(half, 4, 8, 0b00110000, never).at(4), 0u);
+}
+
+// One triangle over a clear image: every pixel in which it has a sample and the background has one weighs it
+// by all positions, exactly as multisampling at these positions does.
+TEST(CoverageMap, MeetsMultisamplingWhereSamplesSuffice) {
+  std::mt19937 random(3);
+  const auto next = [&] { return static_cast<float>(random() % 2401) / 1000.0f - 1.2f; };
+  for (const auto& [samples, positions] : {std::pair(2, 4), {4, 8}, {4, 16}, {8, 16}}) {
+    int edges = 0, differing = 0;
+    double error = 0.0, coarse_error = 0.0;
+    for (int i = 0; i < 20; ++i) {
+      const std::vector<glm::vec3> t = {
+          {next(), next(), 0.5f}, {next(), next(), 0.5f}, {next(), next(), 0.5f}};
+      const Emulation ours = Frame(triangles(t), samples, positions).run();
+      const Emulation fine = Frame(triangles(t), positions, 0).run();
+      const Emulation coarse = Frame(triangles(t), samples, 0).run();
+      for (std::size_t p = 0; p < fine.color.pixels.size(); ++p) {
+        const float expected = fine.color.pixels[p].x, found = ours.color.pixels[p].x;
+        if (expected == 0.0f || expected == 1.0f) continue;
+        ++edges;
+        differing += found != expected ? 1 : 0;
+        // Without a sample of the triangle, or of the background, the pixel is the other's.
+        EXPECT_TRUE(found == expected || found == 0.0f || found == 1.0f) << p;
+        error += std::abs(found - expected);
+        coarse_error += std::abs(coarse.color.pixels[p].x - expected);
+      }
+    }
+    EXPECT_GT(edges, 300);
+    EXPECT_LT(differing, edges * 2 / 5) << samples << " of " << positions;
+    EXPECT_LT(error, coarse_error) << samples << " of " << positions;
+  }
+}
+
+// Two triangles that share an edge and fill the frame: weights of 1 together, in either order of drawing.
+TEST(CoverageMap, TwoHalvesFillThePixel) {
+  const std::vector<glm::vec3> a = {{-1, -1, 0.25f}, {1, -1, 0.25f}, {0.3f, 1, 0.25f}};
+  const std::vector<glm::vec3> b = {{-1, -1, 0.25f}, {0.3f, 1, 0.25f}, {-1, 1, 0.25f}};
+  for (const bool swapped : {false, true}) {
+    std::vector<glm::vec3> both = swapped ? b : a;
+    const std::vector<glm::vec3>& second = swapped ? a : b;
+    both.insert(both.end(), second.begin(), second.end());
+    const Emulation ours = Frame(triangles(both), 4, 16).run();
+    const Emulation fine = Frame(triangles(both), 16, 0).run();
+    int mixed = 0;
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize / 2; ++x) {
+        const float expected = fine.color.at(x, y).x, found = ours.color.at(x, y).x;
+        if (expected < 1.0f) continue;  // beyond the second edge
+        EXPECT_GE(found, 1.0f);
+        EXPECT_LE(found, 2.0f);
+        if (found == 1.0f || found == 2.0f) continue;  // one of them has no sample
+        ++mixed;
+        EXPECT_NEAR(found, expected, 1e-6f);
+      }
+    EXPECT_GT(mixed, 8);
+  }
+}
+
+TEST(CoverageMap, DroppedOrphansOverrateTheLaterSurface) {
+  const std::vector<glm::vec3> t = {{-1.0f, -1.0f, 0.5f}, {0.37f, -1.0f, 0.5f}, {-1.0f, 2.9f, 0.5f}};
+  const Emulation follow = Frame(triangles(t), 4, 16).run(), drop = Frame(triangles(t), 4, 16, true).run();
+  float more = 0.0f;
+  for (std::size_t p = 0; p < follow.color.pixels.size(); ++p) {
+    EXPECT_GE(drop.color.pixels[p].x, follow.color.pixels[p].x);
+    more += drop.color.pixels[p].x - follow.color.pixels[p].x;
+  }
+  EXPECT_GT(more, 1.0f);
+}
+
+TEST(CoverageMap, CountsPositionsTestsSamplesAndMovesMaps) {
+  const std::vector<glm::vec3> all = {{-1, -1, 0.5f}, {3, -1, 0.5f}, {-1, 3, 0.5f}};
+  const Emulation whole = Frame(triangles(all), 4, 16).run();
+  const PassCounters n = total(test::pass_named(whole.trace, "draw"));
+  EXPECT_EQ(n.raster.covered_samples, 16u * kSize * kSize);
+  EXPECT_EQ(n.zrop.early_z_tested_samples, 4u * kSize * kSize);
+  EXPECT_EQ(n.crop.written_samples, 4u * kSize * kSize);
+  EXPECT_EQ(n.mem.other_read_bytes + n.mem.other_write_bytes, 0u) << "one fragment a pixel: no map";
+  const std::vector<glm::vec3> half = {{-1, -1, 0.5f}, {0.02f, -1, 0.5f}, {-1, 1, 0.5f}};
+  const Emulation edge = Frame(triangles(half), 4, 16).run();
+  const PassCounters m = total(test::pass_named(edge.trace, "draw"));
+  EXPECT_GT(m.mem.other_write_bytes, 0u);
+  EXPECT_EQ(m.mem.other_write_bytes % 6, 0u);
+  EXPECT_GT(total(test::pass_named(edge.trace, "resolve")).mem.other_read_bytes, 0u);
+  EXPECT_EQ(test::pass_named(edge.trace, "draw").raster_samples, 16);
+}
+
+std::string refusal(const FrameGraph& graph, int coverage_samples_max) {
+  GpuFeatures features = test::every_feature();
+  features.coverage_samples_max = coverage_samples_max;
+  try {
+    compile(graph, features, FunctionalConfig{});
+  } catch (const InputError& error) {
+    return error.diagnostics().front().code + " " + error.diagnostics().front().message;
+  }
+  return "";
+}
+
+TEST(CoverageMap, IsRefusedByTheNameOfTheSwitch) {
+  const std::vector<glm::vec3> t = {{-1, -1, 0.5f}, {1, -1, 0.5f}, {-1, 1, 0.5f}};
+  const Frame frame(triangles(t), 4, 16);
+  EXPECT_EQ(refusal(frame.graph, 16), "");
+  EXPECT_NE(refusal(frame.graph, 8).find("gpu.features.coverage_samples_max"), std::string::npos);
+  EXPECT_NE(refusal(frame.graph, 0).find("this GPU has none"), std::string::npos);
+  EXPECT_EQ(refusal(Frame(triangles(t), 4, 4).graph, 16).substr(0, 4), "G002");
+  EXPECT_EQ(refusal(Frame(triangles(t), 4, 12).graph, 16).substr(0, 4), "G002");
+  FrameGraph mixed = frame.graph;
+  Pass& pass = mixed.add_pass("second", PassKind::full_screen);
+  pass.color = {mixed.add_image({"copy", Format::r32_float, kSize, kSize, 1})};
+  pass.fragment = &test::constant_program();
+  pass.sampled = {ImageId{0}};
+  EXPECT_EQ(refusal(mixed, 16).substr(0, 4), "G009") << "only a resolve reads the map";
+}
+
+}  // namespace
+}  // namespace hwsim::pipeline
