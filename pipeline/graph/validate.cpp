@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 
-#include "pipeline/emulate/coverage_map.h"
 #include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/graph/validate_coverage.h"
 #include "pipeline/raster/triangle.h"
 
 namespace hwsim::pipeline {
@@ -32,10 +33,9 @@ class Validator {
     errors_.push_back({Severity::error, std::move(code), std::move(message), {}, {}, {}, std::move(help)});
   }
 
-  static std::string text(const ImageDesc& image) {
-    return "`" + image.name + "` (" + std::string(info(image.format).name) + ", " +
-           std::to_string(image.width) + "x" + std::to_string(image.height) + ", " +
-           std::to_string(image.samples) + "x)";
+  void add(std::vector<Diagnostic> found) {
+    errors_.insert(errors_.end(), std::make_move_iterator(found.begin()),
+                   std::make_move_iterator(found.end()));
   }
 
   void check_image(const ImageDesc& image) {
@@ -49,7 +49,8 @@ class Validator {
     if (image.layers < 1 || image.layers > kMaxLayers)
       fail("G001", "image " + text(image) + " must have 1 to " + std::to_string(kMaxLayers) + " layers");
     const int s = image.samples;
-    const bool said = std::find(refused_samples_.begin(), refused_samples_.end(), s) != refused_samples_.end();
+    const bool said =
+        std::find(refused_samples_.begin(), refused_samples_.end(), s) != refused_samples_.end();
     const bool refused = s < 1 || s > kMaxSamples || (s & (s - 1)) != 0 || s > features_.native_msaa_max;
     if (refused) refused_samples_.push_back(s);
     if (said) return;  // once for all images of a frame
@@ -60,45 +61,7 @@ class Validator {
            "image " + text(image) + " needs " + std::to_string(s) + " samples, this GPU has " +
                std::to_string(features_.native_msaa_max) + " (gpu.features.native_msaa_max)",
            "gpu.features.native_msaa_max = " + std::to_string(s) + " makes it native");
-    if (image.coverage_samples != 0) check_coverage_count("image " + text(image), s, image.coverage_samples);
-  }
-
-  // The features' message for a number of coverage samples.
-  void check_coverage_count(const std::string& what, int samples, int coverage_samples) {
-    const int n = coverage_samples;
-    if (n <= samples || n > kMaxCoveragePositions || (n & (n - 1)) != 0 ||
-        samples > kMaxCoveragePositions / 2)
-      fail("G002", what + " has " + std::to_string(n) + " coverage samples for " + std::to_string(samples) +
-                       " color samples: 4, 8 or 16, and more of them than of color");
-    else if (n > features_.coverage_samples_max)
-      fail("G006",
-           what + " needs " + std::to_string(n) + " coverage samples, this GPU has " +
-               (features_.coverage_samples_max == 0 ? "none"
-                                                    : std::to_string(features_.coverage_samples_max)) +
-               " (gpu.features.coverage_samples_max)",
-           "gpu.features.coverage_samples_max = " + std::to_string(n) + " makes it native");
-  }
-
-  // Coverage beyond the samples goes with forward shading of one color image (techniques 1.6).
-  void check_coverage_map(const Pass& pass) {
-    for (const ImageId id : pass.color)
-      if (const ImageDesc& image = graph_.image(id); image.coverage_samples != pass.coverage_samples)
-        fail("G002", "pass `" + pass.name + "` finds coverage at " + std::to_string(pass.coverage_samples) +
-                         " positions, image " + text(image) + " has a map of " +
-                         std::to_string(image.coverage_samples));
-    if (pass.coverage_samples == 0) return;
-    const auto plain = [](const PipelineState& s) {
-      return !s.raster.conservative && !s.raster.sample_rate && s.raster.sample_positions.empty() &&
-             !s.coverage.override_output && !s.coverage.alpha_to_coverage;
-    };
-    const bool all_plain = std::all_of(pass.batches.begin(), pass.batches.end(),
-                                       [&](const DrawBatch& b) { return plain(b.state); });
-    if (pass.kind != PassKind::draw || pass.color.size() != 1 || !pass.depth || !pass.viewports.empty() ||
-        !all_plain)
-      fail("G010",
-           "pass `" + pass.name + "` finds coverage at more positions than it has samples, and is no plain " +
-               "draw into one color and one depth image",
-           "no sample-rate shading, masks, own positions, conservative raster or several viewports");
+    if (image.coverage_samples != 0) add(check_coverage_samples(image, features_));
   }
 
   void check_contents(ImageId id) {
@@ -217,7 +180,7 @@ class Validator {
       mark_written(id);
     }
     if (pass.depth) check_depth(pass);
-    check_coverage_map(pass);
+    add(check_coverage_pass(graph_, pass));
     check_stores(pass);
     if (pass.kind == PassKind::full_screen) {
       if (pass.fragment == nullptr)

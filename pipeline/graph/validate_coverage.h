@@ -1,0 +1,21 @@
+#pragma once
+// What a graph with coverage maps (CSAA, EQAA; techniques 1.6) must obey.
+#include <string>
+#include <vector>
+
+#include "hwsim/base/diagnostics.h"
+#include "pipeline/graph/frame_graph.h"
+
+namespace hwsim::pipeline {
+
+/// An image in messages: name, format, size, samples.
+std::string text(const ImageDesc& image);
+
+/// The numbers of samples and positions of an image with a map, and whether the GPU has them.
+std::vector<Diagnostic> check_coverage_samples(const ImageDesc& image, const GpuFeatures& features);
+
+/// A pass's positions are those of its image's map; and more positions than samples go with forward shading
+/// of one color image.
+std::vector<Diagnostic> check_coverage_pass(const FrameGraph& graph, const Pass& pass);
+
+}  // namespace hwsim::pipeline
