@@ -215,7 +215,7 @@ TEST(Hazards, FourSamplesOfAPlaneMayLookBimodal) {
   const double four = fallback_share(4), eight = fallback_share(8);
   std::printf("[     note ] planes taken for two groups: 4 samples %.2f, 8 samples %.2f\n", four, eight);
   EXPECT_NEAR(four, 0.41, 0.12);
-  EXPECT_EQ(eight, 0.0);
+  EXPECT_LT(eight, 0.01) << "but for the rounding of stored depths";
 }
 
 // Samples whose depth rounds to the far plane's are sky: no aggregate, nothing to unproject to infinity.
