@@ -48,7 +48,7 @@ struct Frame {
     graph.set_output(out);
   }
   Emulation run() const {
-    GpuFeatures features = test::every_feature();
+    GpuFeatures features = every_feature(32);
     features.coverage_samples_max = 16;
     return emulate(graph, features, FunctionalConfig{}, {});
   }
@@ -193,7 +193,7 @@ TEST(CoverageMap, CountsPositionsTestsSamplesAndMovesMaps) {
 }
 
 std::string refusal(const FrameGraph& graph, int coverage_samples_max) {
-  GpuFeatures features = test::every_feature();
+  GpuFeatures features = every_feature(32);
   features.coverage_samples_max = coverage_samples_max;
   try {
     compile(graph, features, FunctionalConfig{});
