@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "pipeline/emulate/coverage_map.h"
-
 namespace hwsim::pipeline {
 namespace {
 
@@ -27,10 +25,10 @@ std::string text(const ImageDesc& image) {
 
 std::vector<Diagnostic> check_coverage_samples(const ImageDesc& image, const GpuFeatures& features) {
   const int n = image.coverage_samples, k = image.samples;
-  if (n <= k || n > kMaxCoveragePositions || (n & (n - 1)) != 0 || k > kMaxCoveragePositions / 2)
+  const bool pattern = (k == 2 && n == 4) || (k == 4 && (n == 8 || n == 16)) || (k == 8 && n == 16);
+  if (!pattern)
     return {problem("G002", "image " + text(image) + " has " + std::to_string(n) + " coverage samples for " +
-                                std::to_string(k) +
-                                " color samples: 4, 8 or 16, and more of them than of color")};
+                                std::to_string(k) + " color samples: 4 for 2, 8 for 4, 16 for 4 or 8")};
   if (n <= features.coverage_samples_max) return {};
   const std::string has =
       features.coverage_samples_max == 0 ? "none" : std::to_string(features.coverage_samples_max);

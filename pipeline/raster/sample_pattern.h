@@ -14,7 +14,7 @@ inline constexpr int kMaxSamples = 32;
 std::span<const SamplePosition> standard_sample_positions(int samples);
 
 /// The standard positions for `positions`, so ordered that the first `samples` lie as the standard pattern of
-/// so many does: each takes the nearest of those left. Their own order starts at the pixel's center. Throws
+/// so many does; their own order starts at the pixel's center. For 2 of 4, 4 of 8, and 4 or 8 of 16. Throws
 /// as above.
 std::vector<SamplePosition> coverage_positions(int samples, int positions);
 
