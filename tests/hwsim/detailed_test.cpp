@@ -101,6 +101,25 @@ TEST(Detailed, ResidencyHidesLatencyUpToTheGate) {
   EXPECT_NEAR(time_with(1) / (800 * 101.0), 1.0, 0.02);
 }
 
+// 101 residents keep the pipe of the test before busy: one less leaves it idle a clock in 101, one more
+// brings nothing.
+TEST(Detailed, TheGateOfResidencyIsOneSubgroupWide) {
+  PassCounters c;
+  c.stats.fragment_shader_invocations = 32 * 10 * 8000;
+  c.shader.alu_issued_lane_ops_w32 = c.stats.fragment_shader_invocations;
+  c.shader.memory_chain_lane_ops = c.stats.fragment_shader_invocations;
+  const PassWork pass = repeated(PassKind::full_screen, c, 1);
+  GpuConfig gpu = sample_gpu();
+  gpu.tex_latency_cycles = 100;
+  gpu.raster_px_per_engine_clk = gpu.export_px_per_clk = 1e5;
+  const auto time_with = [&](double residents) {
+    gpu.subgroups_per_core_max = residents;
+    return time_one(pass, gpu, Engine::detailed).time_ns;
+  };
+  EXPECT_NEAR(time_with(100) - time_with(101), 8000.0 / 100, 5.0);
+  EXPECT_NEAR(time_with(102) - time_with(103), 0.0, 5.0);  // at 101, halves of two subgroups still collide
+}
+
 TEST(Detailed, RowsThatAreOpenedForEveryLineBoundTheBanks) {
   GpuConfig gpu = sample_gpu();
   gpu.dram_channels = 1;

@@ -136,6 +136,32 @@ TEST(Reuse, SetsOfEightWaysMissLittleMoreThanFullAssociativity) {
   }
 }
 
+// What the engines use against what hardware would do: a sample of the blocks, a curve for fully associative
+// caches, and the exact simulation of sets with ways.
+TEST(Reuse, ASampledCurveIsNearExactCachesOfEverySizeAndAssociativity) {
+  const std::vector<BlockAccess> reads = wandering_reads(60'000, 150'000, 4);
+  BlockKinds kinds;
+  kinds[at(kTexture)].shift = 5;
+  const MissCurve curve = analyze(sample_of(reads, 5), kinds).apart[at(kTexture)];
+  const auto all = static_cast<double>(reads.size());
+  double worst = 0.0, sum = 0.0;
+  int cells = 0;
+  for (const std::size_t ways : {4u, 8u, 16u})
+    for (std::size_t k = 3; k < 12; ++k) {  // 8 KiB to 2 MiB
+      SetAssociativeCache cache(std::size_t{1024} << k, 64, ways);
+      double misses = 0.0;
+      for (const BlockAccess& a : reads) misses += cache.access(a.block) ? 0.0 : 1.0;
+      const double error = std::abs(static_cast<double>(curve.read_bytes[k]) / 64.0 - misses) / all;
+      worst = std::max(worst, error);
+      sum += error;
+      ++cells;
+    }
+  std::printf("against set-associative caches: mean error of the miss ratio %.4f, worst %.4f\n", sum / cells,
+              worst);
+  EXPECT_LT(sum / cells, 0.03);
+  EXPECT_LT(worst, 0.06);
+}
+
 TEST(RecentBlocks, SaysWhichFirstLevelCachesMiss) {
   RecentBlocks recent;
   recent.start(0);
