@@ -61,6 +61,7 @@ struct TrafficModel {
   StreamBytesOf<T> reaches_l2;
   StreamBytesOf<T> tile_chunk;  ///< tile memory's loads and stores: DRAM bytes of each chunk
   double tile_px = 0.0;         ///< of its screen tiles
+  T l1_asked{1.0};              ///< texture bytes as whole lines that L1 is asked for
   T l1_fill{1.0};               ///< texture bytes beyond L1
 };
 
@@ -219,6 +220,7 @@ TrafficModel<T> model_traffic(const PassShape& shape, const PassWork& pass, cons
   set(Stream::vertex, ReuseStream::geometry);
   set(Stream::index, ReuseStream::geometry);
   set(Stream::texture, ReuseStream::texture);
+  model.l1_asked = larger(T(1.0), moved_by(pass.reuse.texture_l1, T(kSmallestCacheBytes), false).read);
   model.l1_fill = moved_by(pass.reuse.texture_l1, rates.l1_bytes, false).read;
   model.l2.read[at(Stream::texture)] = model.reaches_l2.read[at(Stream::texture)] = model.l1_fill;
   model.dram.read[at(Stream::texture)] = smaller(model.dram.read[at(Stream::texture)], model.l1_fill);

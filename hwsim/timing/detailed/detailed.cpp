@@ -17,10 +17,13 @@ double student_t90(std::size_t degrees) {
   return 1.645 + 1.6 / static_cast<double>(degrees);
 }
 
+/// Packets: those without a subgroup pass between the others.
 double held_at_once(const PacketPlan& plan, const GpuRates<double>& rates) {
   double most = 64.0;  // the front's queues
   for (const ChunkPackets& chunk : plan.chunks)
-    if (chunk.subgroups > 0.0) most = std::max(most, chunk.resident * rates.shader_cores);
+    if (chunk.subgroups > 0.0)
+      most = std::max(
+          most, chunk.resident * rates.shader_cores * static_cast<double>(chunk.count) / chunk.subgroups);
   return most;
 }
 
@@ -49,11 +52,51 @@ void run_whole(Machine& machine, const PacketPlan& plan, DetailedTime& result) {
   result.time.time_ns = machine.end_ns();
 }
 
-void run_windows(Machine& machine, const PacketPlan& plan, const Windows& w, Random& random,
-                 DetailedTime& result) {
+/// What the closed forms expect of packets [first, last).
+struct Expected {
+  double ns = 0.0, bytes = 0.0;
+};
+Expected expected_of(const PacketPlan& plan, std::uint64_t first, std::uint64_t last) {
+  Expected sum;
+  for (const ChunkPackets& chunk : plan.chunks) {
+    const std::uint64_t from = std::max(first, chunk.first), to = std::min(last, chunk.first + chunk.count);
+    if (from >= to) continue;
+    sum.ns += static_cast<double>(to - from) * chunk.expected_ns;
+    sum.bytes += static_cast<double>(to - from) * chunk.expected_bytes;
+  }
+  return sum;
+}
+
+/// Measured time of windows over what was expected of them, times what is expected of the pass: a ratio
+/// estimate, which chunks of very different cost do not upset.
+void estimate(const std::vector<double>& measured, const std::vector<double>& expected, double all_ns,
+              DetailedTime& result) {
+  const auto n = static_cast<double>(measured.size());
+  double sum = 0.0, weight = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    sum += measured[i];
+    weight += expected[i];
+  }
+  const double ratio = weight > 0.0 ? sum / weight : 1.0;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    const double residual = measured[i] - ratio * expected[i];
+    squares += residual * residual;
+  }
+  const double deviation = weight > 0.0 ? std::sqrt(n * squares / (n - 1.0)) / weight : 0.0;
+  constexpr double kEdgeRatio = 0.03;  // subgroups that a window's edges cut: up to 2 % were seen
+  const double half =
+      std::hypot(student_t90(measured.size() - 1) * deviation * all_ns, kEdgeRatio * ratio * all_ns);
+  result.time.time_ns = ratio * all_ns;
+  result.interval_ns = {std::max(0.0, result.time.time_ns - half), result.time.time_ns + half};
+}
+
+/// Returns what was expected of all simulated packets.
+Expected run_windows(Machine& machine, const PacketPlan& plan, const Windows& w, Random& random,
+                     DetailedTime& result) {
   const double stratum = static_cast<double>(plan.packets) / static_cast<double>(w.count);
   const double slack = stratum - static_cast<double>(w.length + 2 * w.margin);
-  double sum = 0.0, squares = 0.0;
+  std::vector<double> measured, expected;
+  Expected simulated;
   for (std::uint64_t i = 0; i < w.count; ++i) {
     const auto first =
         static_cast<std::uint64_t>(static_cast<double>(i) * stratum + random.ratio() * std::max(0.0, slack));
@@ -62,16 +105,15 @@ void run_windows(Machine& machine, const PacketPlan& plan, const Windows& w, Ran
     const std::vector<double> done = machine.run(first, last);
     const auto from = static_cast<std::size_t>(w.margin),
                to = done.size() - static_cast<std::size_t>(w.margin);
-    const double rate = (done[to - 1] - done[from - 1]) / static_cast<double>(to - from);
-    sum += rate;
-    squares += rate * rate;
+    measured.push_back(done[to - 1] - done[from - 1]);
+    expected.push_back(expected_of(plan, first + from, first + to).ns);
+    const Expected all = expected_of(plan, first, last);
+    simulated.ns += all.ns;
+    simulated.bytes += all.bytes;
     result.simulated_packets += last - first;
   }
-  const auto n = static_cast<double>(w.count);
-  const double mean = sum / n, variance = std::max(0.0, (squares - n * mean * mean) / (n - 1.0));
-  const double half = student_t90(w.count - 1) * std::sqrt(variance / n) * static_cast<double>(plan.packets);
-  result.time.time_ns = mean * static_cast<double>(plan.packets);
-  result.interval_ns = {std::max(0.0, result.time.time_ns - half), result.time.time_ns + half};
+  estimate(measured, expected, expected_of(plan, 0, plan.packets).ns, result);
+  return simulated;
 }
 
 /// The stack of an engine without a critical path: units in proportion to a high power of their busy time.
@@ -99,21 +141,24 @@ DetailedTime detailed_time(const PassWork& pass, const GpuConfig& gpu, const Gpu
   Machine machine(pass, plan, gpu, rates, options.events_without_progress_max, seed);
   const Windows windows = plan_windows(plan, rates, options.detailed_sample_ratio);
   Random random(seed + 17);
+  const Expected all = expected_of(plan, 0, plan.packets);
+  Expected simulated = all;
   if (windows.count == 0)
     run_whole(machine, plan, result);
   else
-    run_windows(machine, plan, windows, random, result);
-  const double scale = static_cast<double>(plan.packets) / static_cast<double>(result.simulated_packets);
+    simulated = run_windows(machine, plan, windows, random, result);
+  const double time_scale = simulated.ns > 0.0 ? all.ns / simulated.ns : 1.0,
+               byte_scale = simulated.bytes > 0.0 ? all.bytes / simulated.bytes : 1.0;
   result.time.dram = machine.dram_bytes();
   const std::array<double, kUnitCount> busy = machine.busy_ns();
-  for (std::size_t u = 0; u < kUnitCount; ++u)
-    result.time.busy_ns[u] = std::min(busy[u] * scale, result.time.time_ns);
   for (std::size_t i = 0; i < kStreamCount; ++i) {
-    result.time.dram.read[i] *= scale;
-    result.time.dram.write[i] *= scale;
+    result.time.dram.read[i] *= byte_scale;
+    result.time.dram.write[i] *= byte_scale;
   }
   result.time.dram += machine.memory().flush_bytes();  // once, however much of the pass was simulated
   result.time.time_ns = std::max(result.time.time_ns, result.time.dram.total() / gpu.dram_bandwidth_gb_s);
+  for (std::size_t u = 0; u < kUnitCount; ++u)
+    result.time.busy_ns[u] = std::min(busy[u] * time_scale, result.time.time_ns);
   share_stack(result.time);
   return result;
 }

@@ -70,8 +70,8 @@ Machine::Machine(const PassWork& pass, const PacketPlan& plan, const GpuConfig& 
       fifo_packets_(static_cast<std::size_t>(rates.queue_packets)),
       memory_(gpu, seed),
       random_(seed ^ 0x5bd1e995),
-      l1_survival_(
-          survival(pass.reuse.texture_l1.read_bytes, pass.reuse.texture_l1.requested_read_bytes, 1.0)) {
+      l1_survival_(survival(pass.reuse.texture_l1.read_bytes, pass.reuse.texture_l1.requested_read_bytes,
+                            plan.l1_asked)) {
   for (Ring& ring : front_done_) ring.assign(fifo_packets_, 0.0);
   leave_done_.assign(fifo_packets_, 0.0);
   const auto cores = static_cast<std::size_t>(rates.shader_cores);

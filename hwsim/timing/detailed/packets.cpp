@@ -18,7 +18,8 @@ SubgroupWork subgroup_work(const PassCounters& c, const ShaderPipes<double>& pip
   const double lanes = std::max(1.0, subgroups_of(c, r.subgroup_size) * r.subgroup_size);
   work.alu_chain_ns = static_cast<double>(c.shader.alu_chain_lane_ops) / lanes * r.alu_latency_ns;
   work.memory_phases = static_cast<double>(c.shader.memory_chain_lane_ops) / lanes;
-  work.l1_lines = static_cast<double>(c.mem.texture_read_bytes) / kTextureLineBytes / subgroups;
+  work.l1_lines =
+      static_cast<double>(c.mem.texture_read_bytes) * model.l1_asked / kTextureLineBytes / subgroups;
   work.storage_lines = static_cast<double>(c.mem.storage_read_bytes) * model.l2.read[at(Stream::storage)] /
                        kTextureLineBytes / subgroups;
   return work;
@@ -67,6 +68,7 @@ PacketPlan plan_packets(const PassWork& pass, const GpuRates<double>& rates) {
   const TrafficModel<double> model = model_traffic(shape_of(pass), pass, rates);
   PacketPlan plan;
   plan.reaches_l2 = model.reaches_l2;
+  plan.l1_asked = model.l1_asked;
   for (const PassCounters& c : pass.chunks) {
     const ChunkCost<double> cost = chunk_cost(c, pass, model, rates);
     ChunkPackets chunk;
@@ -81,6 +83,8 @@ PacketPlan plan_packets(const PassWork& pass, const GpuRates<double>& rates) {
       chunk.work =
           subgroup_work(c, shader_pipes(c, rates), tex_pipe_ns(c, rates), model, rates, chunk.subgroups);
     share_bytes(c, model, rates, chunk);
+    chunk.expected_ns = *std::max_element(chunk.service_ns.begin(), chunk.service_ns.end());
+    chunk.expected_bytes = cost.dram.total() / static_cast<double>(chunk.count);
     plan.chunks.push_back(chunk);
   }
   return plan;

@@ -24,6 +24,7 @@ struct ChunkPackets {
   double resident = 1.0;                        ///< subgroups of this kind that a core holds
   std::array<double, kUnitCount> service_ns{};  ///< of one packet, units that all packets go through
   SubgroupWork work;
+  double expected_ns = 0.0, expected_bytes = 0.0;  ///< of a packet, by the closed forms: what samples weigh
   StreamBytesOf<double> l2, direct;  ///< bytes of a packet that L2 is asked for, and that pass it by
 };
 
@@ -31,6 +32,7 @@ struct PacketPlan {
   std::vector<ChunkPackets> chunks;
   /// The part of what was asked for, compressed as DRAM sees it, that the caches before L2 let through.
   StreamBytesOf<double> reaches_l2;
+  double l1_asked = 1.0;
   std::uint64_t packets = 0;
   const ChunkPackets& chunk_of(std::uint64_t packet) const;
 };
