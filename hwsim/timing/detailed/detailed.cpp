@@ -83,7 +83,7 @@ void estimate(const std::vector<double>& measured, const std::vector<double>& ex
     squares += residual * residual;
   }
   const double deviation = weight > 0.0 ? std::sqrt(n * squares / (n - 1.0)) / weight : 0.0;
-  constexpr double kEdgeRatio = 0.03;  // subgroups that a window's edges cut: up to 2 % were seen
+  constexpr double kEdgeRatio = 0.05;  // subgroups that the edges of windows cut: up to 4 % were seen
   const double half =
       std::hypot(student_t90(measured.size() - 1) * deviation * all_ns, kEdgeRatio * ratio * all_ns);
   result.time.time_ns = ratio * all_ns;
