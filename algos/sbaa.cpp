@@ -42,7 +42,7 @@ SbaaOptions read_options(const Parameters& parameters) {
     error.message =
         "n = " + std::to_string(o.slots) + " surfaces, must be at most msaa = " + std::to_string(o.samples);
     error.help = "a pixel has no more surfaces than samples";
-    throw InputError(std::move(error), ExitStatus::usage);
+    throw InputError(std::move(error));
   }
   return o;
 }
