@@ -41,8 +41,9 @@ struct PassWork {
   bool color_cleared_before = false;  ///< its color targets were: likewise
   bool source_in_tile = false;        ///< a resolve of what the pass just before it drew
   std::vector<ColorTargetWork> color_targets;
-  int attribute_scalars = 0;  ///< 32-bit values that the rasterizer interpolates for each fragment
-  ReuseProfile reuse;         ///< what caches of any size let through
+  int group_memory_lane_bytes = 0;  ///< of a compute group, divided by its invocations
+  int attribute_scalars = 0;        ///< 32-bit values that the rasterizer interpolates for each fragment
+  ReuseProfile reuse;               ///< what caches of any size let through
   std::vector<PassCounters> chunks;
 };
 

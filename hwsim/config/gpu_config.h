@@ -47,6 +47,7 @@ struct GpuValues {
   T interp_scalars_per_core_clk{0.0};
   bool interp_on_alu = false;
   T registers_kib_per_core{256.0};
+  T group_memory_kib_per_core{32.0};
   T subgroups_per_core_max{48.0};
   T alu_latency_cycles{8.0};
   T load_words_per_core_clk{16.0};

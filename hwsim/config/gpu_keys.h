@@ -46,6 +46,9 @@ void describe_shader(V& v, GpuValues<T>& c) {
   v.key({"registers_kib_per_core", 1, kKibHigh, kRate,
          "register file: with the shader's registers it bounds the resident subgroups"},
         c.registers_kib_per_core);
+  v.key({"group_memory_kib_per_core", 1, kKibHigh, kRate,
+         "group memory: what compute groups reserve of it bounds the resident subgroups, too"},
+        c.group_memory_kib_per_core);
   v.key({"subgroups_per_core_max", 1, 4096, kRate, "resident subgroups whatever they need"},
         c.subgroups_per_core_max);
   v.key({"alu_latency_cycles", 1, 1e4, kCost, "shader clocks from an operation to one that waits for it"},

@@ -21,7 +21,8 @@ struct GpuRates {
   T raster_px_ns, raster_sample_ns, raster_tile_ns, hiz_px_ns;
   T zrop_sample_ns;
   T vliw_word_ns;  ///< zero where words are not of five slots: then the average fill alone says it
-  T shader_cores, subgroups_max, registers, alu_latency_ns, tex_latency_ns, l2_latency_ns, dram_latency_ns;
+  T shader_cores, subgroups_max, registers, group_memory_bytes, alu_latency_ns, tex_latency_ns, l2_latency_ns,
+      dram_latency_ns;
   T alu_lane_op_ns, sfu_lane_op_ns, interp_scalar_ns, memory_word_ns, group_memory_word_ns, atomic_ns,
       same_address_atomic_ns, gs_output_word_ns;
   T bilinear_probe_ns, fetch_64bit_cost, fetch_128bit_cost, l1_fill_byte_ns, l1_bytes;
@@ -106,6 +107,7 @@ void derive_shader(const GpuValues<T>& c, const T& clk_ns, GpuRates<T>& r) {
         shader_clk_ns * c.vliw_slots / (c.shader_cores * c.fp32_lanes_per_core * c.alu_efficiency_ratio);
   r.shader_cores = c.shader_cores;
   r.subgroups_max = c.subgroups_per_core_max;
+  r.group_memory_bytes = c.group_memory_kib_per_core * 1024.0;
   r.registers = c.registers_kib_per_core * (1024.0 / kRegisterBytes);
   r.alu_latency_ns = c.alu_latency_cycles * shader_clk_ns;
   r.tex_latency_ns = c.tex_latency_cycles * clk_ns;

@@ -67,15 +67,21 @@ T vs_ns(const PassCounters& c, const GpuRates<T>& r) {
                 T(static_cast<double>(c.vs.sfu_lane_ops) * r.sfu_lane_op_ns));
 }
 
-/// Subgroups that a core holds at once: its registers, shared by those of the chunk's invocations.
+/// Subgroups that a core holds at once: its registers, shared by those of the chunk's invocations, and the
+/// group memory that they reserve (techniques 3.8: four of SBAA's analysis on a SIMD of 32 KiB).
 template <class T>
-T resident_subgroups(const PassCounters& c, const GpuRates<T>& r) {
+T resident_subgroups(const PassCounters& c, const PassWork& pass, const GpuRates<T>& r) {
+  T most = r.subgroups_max;
+  if (pass.group_memory_lane_bytes > 0)
+    most = smaller(most, T(r.group_memory_bytes /
+                           (static_cast<double>(pass.group_memory_lane_bytes) * r.subgroup_size)));
   const auto lanes =
       static_cast<double>(c.stats.fragment_shader_invocations + c.stats.geometry_shader_invocations +
                           c.stats.compute_shader_invocations);
   const auto registers = static_cast<double>(c.shader.register_lanes);
-  if (lanes <= 0.0 || registers <= 0.0) return r.subgroups_max;
-  return smaller(r.subgroups_max, larger(T(1.0), T(r.registers / (registers / lanes * r.subgroup_size))));
+  if (lanes > 0.0 && registers > 0.0)
+    most = smaller(most, T(r.registers / (registers / lanes * r.subgroup_size)));
+  return larger(T(1.0), most);
 }
 
 /// An unfiltered texel takes the place of a probe, a wide one of several. (Filtered textures are 32-bit.)
@@ -128,12 +134,12 @@ T subgroup_life_ns(const PassCounters& c, const ChunkTraffic<T>& traffic, const 
 
 /// The cores as a set of subgroups that wait most of the time (Little's law): a core holds so many at once.
 template <class T>
-T latency_bound_ns(const PassCounters& c, const ChunkTraffic<T>& traffic, const T& pipes_ns,
-                   const GpuRates<T>& r) {
+T latency_bound_ns(const PassCounters& c, const PassWork& pass, const ChunkTraffic<T>& traffic,
+                   const T& pipes_ns, const GpuRates<T>& r) {
   const double subgroups = subgroups_of(c, r.subgroup_size);
   if (subgroups <= 0.0) return T(0.0);
   return subgroups * subgroup_life_ns(c, traffic, pipes_ns, subgroups, r) /
-         (r.shader_cores * resident_subgroups(c, r));
+         (r.shader_cores * resident_subgroups(c, pass, r));
 }
 
 /// Time of each pipe of the cores for all that they run in the chunk, vertex shading included.
@@ -165,9 +171,10 @@ ShaderPipes<T> shader_pipes(const PassCounters& c, const GpuRates<T>& r) {
 /// Pipes run side by side, the fullest sets the pace, unless too few subgroups are there to hide their
 /// latency.
 template <class T>
-T shader_ns(const PassCounters& c, const ChunkTraffic<T>& traffic, const GpuRates<T>& r) {
+T shader_ns(const PassCounters& c, const PassWork& pass, const ChunkTraffic<T>& traffic,
+            const GpuRates<T>& r) {
   const T pipes = shader_pipes(c, r).fullest();
-  return larger(pipes, latency_bound_ns(c, traffic, pipes, r));
+  return larger(pipes, latency_bound_ns(c, pass, traffic, pipes, r));
 }
 
 template <class T>
@@ -212,12 +219,12 @@ T resolve_ns(const PassCounters& c, const PassWork& pass, const GpuRates<T>& r) 
 
 /// What lets units run ahead of each other.
 template <class T>
-void set_waiting(const PassCounters& c, const ChunkTraffic<T>& traffic, const GpuRates<T>& r,
-                 ChunkCost<T>& cost) {
+void set_waiting(const PassCounters& c, const PassWork& pass, const ChunkTraffic<T>& traffic,
+                 const GpuRates<T>& r, ChunkCost<T>& cost) {
   const double subgroups = subgroups_of(c, r.subgroup_size);
   if (subgroups > 0.0) {
     cost.shader_latency_ns = subgroup_life_ns(c, traffic, shader_pipes(c, r).fullest(), subgroups, r);
-    cost.resident_packets = resident_subgroups(c, r) * r.shader_cores * (cost.packets / subgroups);
+    cost.resident_packets = resident_subgroups(c, pass, r) * r.shader_cores * (cost.packets / subgroups);
   }
   const T bytes = larger(traffic.l2_bytes, traffic.dram.total());
   if (bytes > T(0.0)) cost.line_ahead_packets = (r.unit_lines * (kTextureLineBytes * cost.packets)) / bytes;
@@ -247,14 +254,14 @@ ChunkCost<T> chunk_cost(const PassCounters& c, const PassWork& pass, const Traff
   set(Unit::raster, raster_ns(c, pass, r));
   set(Unit::hiz, static_cast<double>(c.hiz.tested_tiles) * kTilePixels * r.hiz_px_ns);
   set(Unit::zrop, zrop_ns(c, r));
-  set(Unit::shader, shader_ns(c, traffic, r));
+  set(Unit::shader, shader_ns(c, pass, traffic, r));
   set(Unit::tex, tex_ns(c, traffic.l1_fill_bytes, r));
   set(Unit::crop, crop_ns(c, pass, r));
   set(Unit::resolve, resolve_ns(c, pass, r));
   set(Unit::l2, traffic.l2_bytes * r.l2_byte_ns);
   set(Unit::dram, dram_ns(traffic.dram, r));
   cost.packets = packets_of(c, r.subgroup_size);
-  set_waiting(c, traffic, r, cost);
+  set_waiting(c, pass, traffic, r, cost);
   return cost;
 }
 

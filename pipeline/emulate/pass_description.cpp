@@ -40,6 +40,10 @@ PassWork describe(const FrameGraph& graph, const CompiledGraph& compiled, int po
     work.color_cleared_before =
         work.color_cleared_before && cleared[static_cast<std::size_t>(written[i].index)] != 0;
   }
+  if (pass.compute != nullptr) {
+    const int lanes = pass.compute->group_width * pass.compute->group_height;
+    work.group_memory_lane_bytes = (pass.compute->group_memory_bytes + lanes - 1) / lanes;
+  }
   work.sample_rate = pass.state.raster.sample_rate;
   for (const DrawBatch& batch : pass.batches) {
     work.sample_rate = work.sample_rate || batch.state.raster.sample_rate;

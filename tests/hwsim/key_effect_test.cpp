@@ -127,6 +127,10 @@ std::vector<PassWork> single_path_passes() {
     c.tex.requests = 9'999'999;
   }
   passes.push_back(waiting);
+  PassWork grouped = waiting;  // group memory, not registers, bounds what a core holds
+  grouped.group_memory_lane_bytes = 512;
+  for (PassCounters& c : grouped.chunks) c.shader.register_lanes = 9'999'999;
+  passes.push_back(grouped);
   passes.push_back(memory);
   PassWork binned = pass_of([](PassCounters& c) { c.raster.visited_tiles = 99'999; }, Format::rgba32_float);
   passes.push_back(binned);

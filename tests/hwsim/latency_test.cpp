@@ -45,6 +45,18 @@ TEST(Latency, RegistersBoundTheResidentSubgroups) {
   EXPECT_DOUBLE_EQ(shader_ns(waiting_pass(8, 0, 4000), latency_gpu()), 1000.0 * 80);  // one always runs
 }
 
+TEST(Latency, GroupMemoryBoundsTheResidentSubgroups) {
+  GpuConfig gpu = latency_gpu();
+  gpu.group_memory_kib_per_core = 32;
+  PassWork pass = waiting_pass(8, 0, 1);
+  pass.group_memory_lane_bytes = 128;  // SBAA's counters: 4 KiB a subgroup of 32
+  EXPECT_DOUBLE_EQ(shader_ns(pass, gpu), 1000.0 / 8 * 80);
+  pass.group_memory_lane_bytes = 16;  // 64 subgroups would fit: the gate
+  EXPECT_DOUBLE_EQ(shader_ns(pass, gpu), 1000.0 / 16 * 80);
+  pass.group_memory_lane_bytes = 4096;
+  EXPECT_DOUBLE_EQ(shader_ns(pass, gpu), 1000.0 * 80);  // one always runs
+}
+
 TEST(Latency, ARequestWaitsForItsSlowestLevel) {
   PassWork pass = waiting_pass(0, 1, 1);
   PassCounters& c = pass.chunks[0];
