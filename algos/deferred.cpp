@@ -18,6 +18,7 @@ struct GBuffer {
   std::vector<ImageId> attachments;
   ImageId depth, lit;
   int samples = 1;
+  bool alpha_to_coverage = false;
 };
 
 GBuffer add_gbuffer(FrameGraph& graph, const Parameters& parameters) {
@@ -57,7 +58,10 @@ void add_gbuffer_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer&
   pass.color = g.attachments;
   pass.depth = g.depth;
   pass.batches.push_back(gbuffer_batch(parts, g, parts.draws.opaque, false));
-  if (!parts.draws.mask.empty()) pass.batches.push_back(gbuffer_batch(parts, g, parts.draws.mask, true));
+  if (parts.draws.mask.empty()) return;
+  DrawBatch batch = gbuffer_batch(parts, g, parts.draws.mask, !g.alpha_to_coverage);
+  batch.state.coverage.alpha_to_coverage = batch.state.coverage.alpha_dither = g.alpha_to_coverage;
+  pass.batches.push_back(std::move(batch));
 }
 
 /// What lighting passes read of the G-buffer, in the order of their slots.
@@ -150,6 +154,16 @@ void finish(FrameGraph& graph, const FrameParts& parts, const GBuffer& g) {
   add_full_screen(graph, "present", {g.lit}, output, scale_program(), std::make_shared<ScaleUniforms>());
 }
 
+/// Coverage comes from the first target's alpha, which other layouts use for a value of their own.
+void check_alpha_to_coverage(const GBuffer& g) {
+  if (!g.alpha_to_coverage || g.layout->encoding == GBufferEncoding::compact) return;
+  Diagnostic error;
+  error.code = "T003";
+  error.message = "alpha_to_coverage = on with layout = " + std::string(g.layout->id) + ", must be gb_agaa16";
+  error.help = "the other layouts keep a value of their own where alpha would stand";
+  throw InputError(std::move(error), ExitStatus::usage);
+}
+
 FrameGraph build_deferred(const FrameRequest& request, const Parameters& parameters) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
@@ -164,7 +178,9 @@ FrameGraph build_deferred(const FrameRequest& request, const Parameters& paramet
 FrameGraph build_simple_complex(const FrameRequest& request, const Parameters& parameters) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
-  const GBuffer g = add_gbuffer(graph, parameters);
+  GBuffer g = add_gbuffer(graph, parameters);
+  g.alpha_to_coverage = parameters.find("alpha_to_coverage")->second != 0;
+  check_alpha_to_coverage(g);
   add_gbuffer_pass(graph, parts, g);
   const auto uniforms = make_uniforms(graph, parts, g);
   uniforms->normal_dot_min = static_cast<float>(parameters.find("normal_dot_min")->second);
@@ -186,14 +202,16 @@ FrameGraph build_simple_complex(const FrameRequest& request, const Parameters& p
 constexpr ParameterInfo kLayout{"layout", 0, 0, 3, "what the G-buffer holds of a sample", kLayoutChoices};
 constexpr std::array<ParameterInfo, 2> kDeferred = {
     ParameterInfo{"samples", 8, 1, 32, "samples a pixel: a power of two"}, kLayout};
-constexpr std::array<ParameterInfo, 6> kSimpleComplex = {
+constexpr std::array<ParameterInfo, 7> kSimpleComplex = {
     ParameterInfo{"samples", 8, 2, 32, "samples a pixel: a power of two"},
     kLayout,
     ParameterInfo{"lighting", 0, 0, 1, "full-screen passes with stencil, or 16x16 compute tiles",
                   "stencil|compute"},
     ParameterInfo{"normal_dot_min", 0.99, 0, 1, "normals further apart make a pixel complex (cosine)"},
     ParameterInfo{"z_scale", 1, 0, 1000, "depth steps beyond this many slopes of a pixel make it complex"},
-    ParameterInfo{"compare_all", 0, 0, 1, "differing materials make a pixel complex, too", "off|on"}};
+    ParameterInfo{"compare_all", 0, 0, 1, "differing materials make a pixel complex, too", "off|on"},
+    ParameterInfo{"alpha_to_coverage", 0, 0, 1, "alpha is coverage, not a test; with layout=gb_agaa16",
+                  "off|on"}};
 
 constexpr TechniqueInfo kTechniques[] = {
     {"deferred", "multisampled G-buffer, every sample lit", kDeferred, build_deferred},

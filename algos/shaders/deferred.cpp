@@ -26,8 +26,8 @@ struct GBufferShader {
     const auto m = lanes::sample_material(s, u.full_varyings);
     if constexpr (kAlphaTest) s.discard(m.base.w < F(s.material().alpha_cutoff));
     const auto p = s.attr3(V::kPosition);
-    GBufferValues<F> values{p,           m.normal, {m.base.x, m.base.y, m.base.z}, m.emissive, m.metallic,
-                            m.roughness, {}};
+    GBufferValues<F> values{p,  m.normal, {m.base.x, m.base.y, m.base.z}, m.emissive, m.metallic, m.roughness,
+                            {}, m.base.w};
     if constexpr (kEncoding != GBufferEncoding::compact) {
       const glm::mat4& v = u.view_from_world;
       const F z = F(v[0][2]) * p.x + F(v[1][2]) * p.y + F(v[2][2]) * p.z + F(v[3][2]);

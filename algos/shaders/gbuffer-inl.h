@@ -53,6 +53,7 @@ struct GBufferValues {
   lanes::Vec3<F> position, normal, base, emissive;
   F metallic, roughness;
   lanes::Vec2<F> gradient;  ///< of view-space depth
+  F alpha = F(1.0f);        ///< coverage, where alpha is no test
 };
 
 template <GBufferEncoding kEncoding, class S, class F>
@@ -71,7 +72,7 @@ void write_gbuffer(S& s, const GBufferValues<F>& v) {
   } else {
     lanes::Surface<F> surface;
     lanes::set_material(v.base, v.metallic, v.roughness, surface);
-    s.output(0, {n.x, n.y, F(0.0f), F(0.0f)});
+    s.output(0, {n.x, n.y, F(0.0f), v.alpha});  // the target has no alpha: it is there for coverage alone
     s.output(1, {surface.albedo.x, surface.albedo.y, surface.albedo.z, v.roughness});
     s.output(2, {surface.specular.x, surface.specular.y, surface.specular.z, luminance(v.emissive)});
   }
