@@ -57,12 +57,19 @@ CalibratedParameter parameter_from(const Json& json) {
 }
 
 /// Fitted values of one GPU: those of scope all, then its own.
+/// A GPU's own parameter takes the place of the one for all.
+bool concerns(const Calibration& calibration, const CalibratedParameter& p, const std::string& gpu) {
+  if (p.scope != Scope::all) return p.scope == Scope::gpu && p.member == gpu;
+  return std::none_of(calibration.parameters.begin(), calibration.parameters.end(), [&](const auto& own) {
+    return own.scope == Scope::gpu && own.member == gpu && own.name == p.name;
+  });
+}
+
 std::vector<const CalibratedParameter*> parameters_of(const Calibration& calibration,
                                                       const std::string& gpu) {
   std::vector<const CalibratedParameter*> found;
-  for (const Scope scope : {Scope::all, Scope::gpu})
-    for (const CalibratedParameter& p : calibration.parameters)
-      if (p.scope == scope && p.used && (scope == Scope::all || p.member == gpu)) found.push_back(&p);
+  for (const CalibratedParameter& p : calibration.parameters)
+    if (p.used && concerns(calibration, p, gpu)) found.push_back(&p);
   return found;
 }
 
@@ -197,7 +204,7 @@ FrameInterval frame_interval(const Calibration& calibration, const WorkTrace& tr
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < n; ++i) {
     const CalibratedParameter& p = calibration.parameters[i];
-    if (p.scope == Scope::scene || (p.scope == Scope::gpu && p.member != gpu.id)) continue;
+    if (p.name == kPresent || !concerns(calibration, p, gpu.id)) continue;
     keys.push_back(p.name);
     places.push_back(i);
   }

@@ -2,12 +2,28 @@
 
 #include <algorithm>
 
+#include "hwsim/trace_file.h"
+
 namespace hwsim::cost_models {
 namespace {
 
 bool any_pass_matches(const WorkTrace& trace, const std::string& patterns) {
   return std::any_of(trace.passes.begin(), trace.passes.end(),
                      [&](const PassWork& pass) { return pass_matches(patterns, pass.name); });
+}
+
+/// FNV-1a of a pass as a trace file would hold it: 600 passes share a hash with a
+/// probability of 1e-14.
+std::vector<std::uint64_t> keys_of_passes(const WorkTrace& trace) {
+  std::vector<std::uint64_t> keys;
+  for (const PassWork& pass : trace.passes) {
+    WorkTrace alone;
+    alone.passes.push_back(pass);
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    for (const std::uint8_t byte : encode_trace(alone)) hash = (hash ^ byte) * 0x100000001b3u;
+    keys.push_back(hash);
+  }
+  return keys;
 }
 
 class Builder {
@@ -31,13 +47,16 @@ class Builder {
 
  private:
   void add(const RunSpec& spec, const std::vector<std::size_t>& cells) {
-    Replay replay{spec, nullptr, nullptr, experiment_.gpu_index(spec.gpu), {}};
+    Replay replay;
+    replay.run = spec;
+    replay.gpu = experiment_.gpu_index(spec.gpu);
     const GpuConfig& gpu = experiment_.gpus[replay.gpu];
     try {
       replay.trace = traces_(spec, gpu);
-      if (spec.point_lights > 0) {
+      if (spec.point_lights > 0 || spec.lights == "complex") {
         RunSpec unlit = spec;
         unlit.point_lights = 0;
+        if (spec.lights == "complex") unlit.lights = "simple";
         replay.unlit = traces_(unlit, gpu);
         if (!same_passes(*replay.trace, *replay.unlit)) replay.unlit = nullptr;
       }
@@ -53,6 +72,8 @@ class Builder {
         experiment_.not_run.push_back(
             {cell, "no pass of `" + spec.technique + "` is called `" + patterns + "`"});
     }
+    replay.pass_keys = keys_of_passes(*replay.trace);
+    if (replay.unlit) replay.unlit_pass_keys = keys_of_passes(*replay.unlit);
     if (!replay.cells.empty()) experiment_.replays.push_back(std::move(replay));
   }
 

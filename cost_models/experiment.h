@@ -1,5 +1,6 @@
 #pragma once
 // The published cells beside what predicts them: runs, their traces, GPUs and parameters.
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -21,8 +22,10 @@ struct Replay {
   RunSpec run;
   std::shared_ptr<const WorkTrace> trace;
   std::shared_ptr<const WorkTrace> unlit;  ///< the same without point lights; none where the run has none
-  std::size_t gpu = 0;                     ///< index into Experiment::gpus
-  std::vector<std::size_t> cells;          ///< indices into Experiment::cells
+  std::vector<std::uint64_t> pass_keys,
+      unlit_pass_keys;             ///< hashes: equal passes are timed once; may be empty
+  std::size_t gpu = 0;             ///< index into Experiment::gpus
+  std::vector<std::size_t> cells;  ///< indices into Experiment::cells
 };
 
 /// Rows that cannot be predicted in this version, never dropped silently.

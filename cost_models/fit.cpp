@@ -107,7 +107,7 @@ class Solve {
         const FitOptions& options, int index)
       : experiment_(experiment), values_(std::move(start)), shared_(experiment, values_, options.jobs) {
     // A redescending loss sees no slope far away: a convex one brings the values near first.
-    solve(use, options, index, Loss::huber);
+    if (options.convex_first) solve(use, options, index, Loss::huber);
     solve(use, options, index, Loss::cauchy);
   }
 
@@ -129,9 +129,9 @@ class Solve {
     ProgressCallback progress(options, index);
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_QR;
-    solver.max_num_iterations = options.max_iterations;
-    solver.function_tolerance = 1e-8;
-    solver.parameter_tolerance = 1e-8;
+    solver.max_num_iterations = loss == Loss::huber ? options.max_iterations / 4 : options.max_iterations;
+    solver.function_tolerance = 1e-6;
+    solver.parameter_tolerance = 1e-6;
     solver.logging_type = ceres::SILENT;
     solver.callbacks.push_back(&progress);
     ceres::Solve(solver, &problem, &summary_);

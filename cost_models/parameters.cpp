@@ -1,5 +1,6 @@
 #include "cost_models/parameters.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <set>
@@ -34,6 +35,10 @@ class Reader {
       parameters.push_back(parameter);
     }
     if (!problems_.empty()) throw InputError(problems_);
+    for (Parameter& p : parameters)
+      for (const Parameter& own : parameters)
+        if (p.scope == Scope::all && own.scope == Scope::gpu && own.name == p.name)
+          p.own_of.push_back(own.member);
     return parameters;
   }
 
@@ -90,6 +95,7 @@ class Reader {
       problem("no published row names the GPU `" + p.member + "`");
       return {0.0, {0.0, 0.0}};
     }
+    if (p.name == kPresent) return {0.0, {0.0, 0.0}};
     GpuConfig copy = gpu->second;
     for (const Key& key : keys_of(static_cast<GpuValues<double>&>(copy))) {
       if (key.info.name != p.name || !std::holds_alternative<double*>(key.slot)) continue;
@@ -123,7 +129,8 @@ std::string_view scope_name(Scope scope) {
 }
 
 bool Parameter::concerns(const std::string& gpu, const std::string& scene) const {
-  return scope == Scope::all || member == (scope == Scope::gpu ? gpu : scene);
+  if (scope == Scope::all) return std::find(own_of.begin(), own_of.end(), gpu) == own_of.end();
+  return member == (scope == Scope::gpu ? gpu : scene);
 }
 
 std::vector<Parameter> load_parameters(const std::string& path,

@@ -10,15 +10,20 @@
 
 namespace hwsim::cost_models {
 
-/// gpu: a key of one GPU's file. all: the same key of every GPU. scene: a factor between the original scene
-/// of a paper and its stand-in.
+/// gpu: a key of one GPU's file. all: the same key of every GPU that has no own. scene: a factor between the
+/// original scene of a paper and its stand-in.
 enum class Scope { gpu, all, scene };
 std::string_view scope_name(Scope scope);
 
 /// The two factors that a scene may have.
 inline constexpr std::string_view kGeometryLoad = "geometry_load";  ///< work of draws, original over stand-in
-inline constexpr std::string_view kLightReach =
-    "light_reach";  ///< share of the point lights' work that is done
+inline constexpr std::string_view kLightReach = "light_reach";      ///< the same of the point lights' work
+
+/// Of a GPU, but of no pass: what the papers' whole frames contain beside the passes (present, host). `run`
+/// predicts the passes alone.
+inline constexpr std::string_view kPresent = "present_us";
+/// The name by which mapping files count it among the passes of a row; "*" includes it.
+inline constexpr std::string_view kPresentPass = "present";
 
 struct Parameter {
   Scope scope = Scope::gpu;
@@ -29,6 +34,7 @@ struct Parameter {
   std::string unit, meaning;
   std::string id() const { return member + "." + name; }
   bool concerns(const std::string& gpu, const std::string& scene) const;
+  std::vector<std::string> own_of;  ///< scope all: GPUs that have a parameter of this name themselves
 };
 
 /// Reads the declarations. "file" for start or range stands for what the GPU's file says (value, interval).

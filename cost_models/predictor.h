@@ -14,7 +14,7 @@ struct Prediction {
 };
 
 /// Largest number of GPU keys that one replay may depend on: the width of the Jets.
-inline constexpr int kJetWidth = 16;
+inline constexpr int kJetWidth = 8;
 
 class Predictor {
  public:
@@ -31,9 +31,21 @@ class Predictor {
   std::vector<double> start() const;
 
  private:
+  /// Replays share passes: those that several techniques begin with, those that no light reaches.
+  struct SharedPass {
+    const PassWork* work = nullptr;
+    std::size_t gpu = 0;
+    bool waits = false;
+  };
+  void collect_passes();
+  template <class T>
+  void evaluate_as(std::span<const double> log_values);
+
   const Experiment& experiment_;
   int jobs_;
-  std::vector<std::vector<std::size_t>> active_;  ///< by GPU: indices of the parameters of its keys
+  std::vector<SharedPass> passes_;
+  std::vector<std::vector<std::size_t>> lit_, unlit_;  ///< by replay: indices into passes_
+  std::vector<std::vector<std::size_t>> active_;       ///< by GPU: indices of the parameters of its keys
   std::vector<Prediction> predictions_;
 };
 

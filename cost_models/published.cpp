@@ -117,7 +117,7 @@ class Mapper {
         uses_((folder / "uses.csv").string(), 9),
         gpus_(read_csv((folder / "gpus.csv").string())),
         scenes_((folder / "scenes.csv").string(), 4),
-        techniques_((folder / "techniques.csv").string(), 2),
+        techniques_((folder / "techniques.csv").string(), 4),
         passes_((folder / "passes.csv").string(), 3) {}
 
   std::vector<Cell> run() {
@@ -167,8 +167,10 @@ class Mapper {
     run.scene = scenes_.text(*scene, "stand_in");
     run.camera = scenes_.text(*scene, "camera");
     run.point_lights = static_cast<int>(number(scenes_.text(*scene, "point_lights")));
+    run.lights = scenes_.text(*scene, "lights");
     run.shadows = scenes_.text(*scene, "shadows") == "yes";
     run.technique = filled(techniques_.text(*technique, "template"), row);
+    cell.repeat = std::max(1.0, number(techniques_.text(*technique, "repeat")));
     for (const auto& line : gpus_.rows)
       if (line[0] == row.gpu) run.gpu = line[1];
     const auto x = row.resolution.find('x');
@@ -200,8 +202,9 @@ std::string PublishedRow::id() const { return table + ":" + std::to_string(line)
 
 std::string RunSpec::to_string() const {
   return technique + " of " + scene + (camera == "0" ? "" : " (" + camera + ")") + " at " +
-         std::to_string(width_px) + "x" + std::to_string(height_px) + ", " + std::to_string(point_lights) +
-         " lights" + (shadows ? ", shadows" : "") + ", on " + gpu;
+         std::to_string(width_px) + "x" + std::to_string(height_px) +
+         (point_lights > 0 ? ", " + std::to_string(point_lights) + " point lights" : "") +
+         (lights == "scene" ? "" : ", " + lights + " lights") + (shadows ? ", shadows" : "") + ", on " + gpu;
 }
 
 std::string_view row_use_name(RowUse use) {

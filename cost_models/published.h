@@ -26,7 +26,8 @@ struct RunSpec {
   std::string technique;  ///< "sbaa_top:n=2,msaa=8"
   std::string gpu;
   int width_px = 0, height_px = 0;
-  int point_lights = 0;
+  int point_lights = 0;          ///< added to those of the scene
+  std::string lights = "scene";  ///< or SBAA's profiles: simple, complex
   bool shadows = true;
   std::string to_string() const;
   friend auto operator<=>(const RunSpec&, const RunSpec&) = default;
@@ -52,8 +53,9 @@ struct Cell {
   RunSpec run;             ///< meaningful where has_run
   bool has_run = false;
   std::string scene_group;  ///< what shares a scene's load: the stand-in, all its views and lights
-  std::string passes;  ///< trace passes that count: names and "prefix*", "!name" takes away, blanks between
-  double rate = 1.0;   ///< samples a pixel of the row, for rate extrapolation
+  std::string passes;   ///< trace passes that count: names and "prefix*", "!name" takes away, blanks between
+  double repeat = 1.0;  ///< times that the paper's program ran these passes for one frame
+  double rate = 1.0;    ///< samples a pixel of the row, for rate extrapolation
 };
 
 /// Rows of every table, in the order of files and lines. Throws InputError for damaged files.

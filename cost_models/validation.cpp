@@ -112,6 +112,7 @@ class Validator {
     optimum_ = validation.fit.log_values;
     refit_ = options_;
     refit_.starts = 1;
+    refit_.convex_first = false;  // they begin at an optimum
     refit_.progress = nullptr;
     for (int s = 0; s < kSplitCount; ++s)
       validation.splits.push_back(split(static_cast<Split>(s), validation.fit));
@@ -280,12 +281,8 @@ Figures figures_of(const Experiment& experiment, const std::vector<HeldOut>& cel
 
 double counted(const Experiment& experiment, const Replay& replay, std::size_t cell) {
   if (experiment.cells[cell].unit == "mib")
-    return static_cast<double>(replay.trace->peak_memory_bytes) / kMib;
-  double samples = 0.0;
-  for (const PassWork& pass : replay.trace->passes)
-    if (pass_matches(experiment.cells[cell].passes, pass.name))
-      samples += static_cast<double>(total(pass).ps.invocations);
-  return samples;
+    return static_cast<double>(replay.trace->allocated_memory_bytes) / kMib;
+  return static_cast<double>(total(*replay.trace).technique.lit_samples);
 }
 
 }  // namespace hwsim::cost_models

@@ -35,6 +35,108 @@ TEST(Predictor, JetsEqualCentralDifferences) {
   EXPECT_GT(nonzero, e.cells.size());
 }
 
+/// Central differences of one cell by one parameter.
+double slope_of(const Experiment& e, std::size_t cell, std::size_t parameter, std::vector<double> at) {
+  constexpr double kStep = 1e-6;
+  Predictor predictor(e, 1);
+  at[parameter] += kStep;
+  predictor.evaluate(at, false);
+  const double high = std::log(predictor[cell].ms);
+  at[parameter] -= 2.0 * kStep;
+  predictor.evaluate(at, false);
+  return (high - std::log(predictor[cell].ms)) / (2.0 * kStep);
+}
+
+// One row is of a whole frame, the others of single passes.
+TEST(Predictor, PresentTimeBelongsToWholeFramesAlone) {
+  Synthetic s = make_synthetic(1, 2);
+  s.experiment.cells[0].passes = "*";
+  s.experiment.parameters.push_back(parameter(Scope::gpu, "a", std::string(kPresent), 400.0, 100.0, 3000.0));
+  s.truth.push_back(std::log(500.0));
+  const std::size_t added = s.truth.size() - 1;
+  Predictor with(s.experiment, 1);
+  with.evaluate(s.truth, true);
+  EXPECT_NEAR(with[0].gradient[added], 0.5 / with[0].ms, 1e-12);
+  EXPECT_NEAR(with[0].gradient[added], slope_of(s.experiment, 0, added, s.truth), 1e-6);
+  EXPECT_EQ(with[1].gradient[added], 0.0);
+}
+
+TEST(Predictor, RowsOfRepeatedPassesTakeSoManyTimes) {
+  Synthetic s = make_synthetic(1, 1);
+  Predictor once(s.experiment, 1);
+  once.evaluate(s.truth, true);
+  s.experiment.cells[0].repeat = 4.0;
+  Predictor repeated(s.experiment, 1);
+  repeated.evaluate(s.truth, true);
+  EXPECT_NEAR(repeated[0].ms, 4.0 * once[0].ms, 1e-12);
+  for (std::size_t k = 0; k < s.truth.size(); ++k)
+    EXPECT_NEAR(repeated[0].gradient[k], once[0].gradient[k], 1e-12);
+}
+
+// The light is that of another run: halfway between them at a reach of a half.
+TEST(Predictor, LightReachScalesWhatTheLightsAdd) {
+  Synthetic s = make_synthetic(1, 1);
+  Replay& replay = s.experiment.replays[0];
+  auto lit = std::make_shared<WorkTrace>(*replay.trace);
+  for (PassCounters& chunk : lit->passes[1].chunks) {
+    chunk.shader.alu_lane_ops *= 3;
+    chunk.shader.alu_issued_lane_ops_w32 *= 3;
+  }
+  replay.unlit = replay.trace;
+  replay.trace = lit;
+  s.experiment.parameters.push_back(
+      parameter(Scope::scene, "scene0", std::string(kLightReach), 1.0, 0.05, 8.0));
+  s.truth.push_back(0.0);
+  const std::size_t reach = s.truth.size() - 1;
+  const auto light_ms = [&](double value) {
+    s.truth[reach] = std::log(value);
+    Predictor predictor(s.experiment, 1);
+    predictor.evaluate(s.truth, false);
+    return predictor[1].ms;
+  };
+  EXPECT_GT(light_ms(1.0), light_ms(0.05));
+  EXPECT_NEAR(light_ms(2.0) - light_ms(1.0), 2.0 * (light_ms(1.0) - light_ms(0.5)), 1e-9);
+  Predictor predictor(s.experiment, 1);
+  predictor.evaluate(s.truth, true);
+  EXPECT_NEAR(predictor[1].gradient[reach], slope_of(s.experiment, 1, reach, s.truth), 1e-6);
+}
+
+TEST(Predictor, OwnParameterTakesThePlaceOfTheOneForAll) {
+  Synthetic s = make_synthetic(1, 1);
+  for (Parameter& p : s.experiment.parameters)
+    if (p.scope == Scope::all) p.own_of = {"a"};
+  s.experiment.parameters.push_back(parameter(Scope::gpu, "a", "alu_efficiency_ratio", 0.8, 0.1, 1.0));
+  s.truth.push_back(std::log(0.5));
+  Predictor predictor(s.experiment, 1);
+  predictor.evaluate(s.truth, true);
+  bool own_moves = false, shared_moves = false;
+  for (std::size_t i = 0; i < s.experiment.cells.size(); ++i)
+    for (std::size_t k = 0; k < s.truth.size(); ++k) {
+      const Parameter& p = s.experiment.parameters[k];
+      if (p.name != "alu_efficiency_ratio" || s.experiment.cells[i].run.gpu != "a") continue;
+      (p.scope == Scope::all ? shared_moves : own_moves) |= predictor[i].gradient[k] != 0.0;
+    }
+  EXPECT_TRUE(own_moves);
+  EXPECT_FALSE(shared_moves);
+}
+
+TEST(Predictor, EqualPassesAreTimedOnceWithTheSameResult) {
+  Synthetic s = make_synthetic(1, 3);
+  Predictor apart(s.experiment, 1);
+  apart.evaluate(s.truth, true);
+  for (std::size_t r = 0; r < s.experiment.replays.size(); ++r)
+    s.experiment.replays[r].pass_keys = {r, 100 + r, 200 + r};
+  Replay& last = s.experiment.replays[2];
+  last.trace = s.experiment.replays[0].trace;
+  last.pass_keys = s.experiment.replays[0].pass_keys;
+  Predictor shared(s.experiment, 1);
+  shared.evaluate(s.truth, true);
+  for (std::size_t p = 0; p < 3; ++p) {
+    EXPECT_EQ(shared[last.cells[p]].ms, shared[s.experiment.replays[0].cells[p]].ms);
+    EXPECT_EQ(shared[s.experiment.replays[0].cells[p]].ms, apart[s.experiment.replays[0].cells[p]].ms);
+  }
+}
+
 TEST(Predictor, ThreadsDoNotChangeBits) {
   const Synthetic s = make_synthetic(2, 2);
   Predictor one(s.experiment, 1), three(s.experiment, 3);
@@ -72,6 +174,14 @@ TEST(Fit, RandomStartsSayWhetherTheyEndTogether) {
   for (const StartOutcome& outcome : f.starts)
     EXPECT_EQ(outcome.same_optimum, outcome.cost <= f.cost * 1.001 + 1e-9);
   EXPECT_TRUE(std::any_of(f.starts.begin(), f.starts.end(), [](const auto& o) { return o.same_optimum; }));
+}
+
+TEST(Fit, TenStartsEndInTheSameOptimum) {
+  const Synthetic s = make_synthetic(2, 4);
+  const Fit f = fit_all(s.experiment, 10);
+  const auto same =
+      std::count_if(f.starts.begin(), f.starts.end(), [](const auto& o) { return o.same_optimum; });
+  EXPECT_EQ(same, 10);
 }
 
 // One row of 60 printed 100 times too large.
