@@ -217,11 +217,18 @@ class Reproduction {
   std::vector<HeldOut> predictions_;
 };
 
-bool wants_text(const CommonOptions& options) {
-  return options.formats.empty() ||
-         std::any_of(options.formats.begin(), options.formats.end(), [](const FormatRequest& f) {
-           return f.format == Format::table || f.format == Format::md;
-         });
+bool is_text(const FormatRequest& request) {
+  return request.format == Format::table || request.format == Format::md;
+}
+
+/// People read fewer columns than programs: each kind of format gets its own table.
+void print_both(const Reproduction& reproduction, const CommonOptions& options) {
+  CommonOptions text = options, data = options;
+  std::erase_if(text.formats, [](const FormatRequest& f) { return !is_text(f); });
+  std::erase_if(data.formats, is_text);
+  if (options.formats.empty() || !text.formats.empty())
+    print({.table = reproduction.text_table(), .footing = "\n" + reproduction.figures_text()}, text);
+  if (!data.formats.empty()) print({.table = reproduction.full_table()}, data);
 }
 
 }  // namespace
@@ -234,9 +241,7 @@ ExitStatus reproduce(const ReproduceOptions& options, Context& context) {
   }
   const Reproduction reproduction(options, context);
   if (!options.out.empty()) reproduction.write_pictures(options.out);
-  print({.table = wants_text(options.common) ? reproduction.text_table() : reproduction.full_table(),
-         .footing = "\n" + reproduction.figures_text()},
-        options.common);
+  print_both(reproduction, options.common);
   return ExitStatus::done;
 }
 

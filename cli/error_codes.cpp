@@ -147,7 +147,7 @@ constexpr ErrorCode kCodes[] = {
      "the "
      "fit may move. \"file\" takes start or range from the GPU's own file."},
     {"M004", "too many parameters of a GPU",
-     "The derivatives of one GPU are computed side by side, 16 at a time."},
+     "The derivatives of one GPU are computed side by side, 12 at a time."},
     {"M005", "too many parameters", "The fit takes at most one parameter for four fitted values."},
     {"M006", "damaged calibration", "calibration.json must be as `hwsim fit` wrote it."},
 

@@ -299,6 +299,7 @@ RunPlan make_run_plan(const RunOptions& options) {
                         timing.calibrated, problems);
   plan.reference_samples = options.reference_samples.value_or(file.reference_samples);
   plan.images = !options.no_image;
+  plan.calibrated = timing.calibrated;
   if (is_image_file(plan.view.scene)) check_image_run(options, plan, problems);
   if (!problems.empty()) throw InputError(problems);
   return plan;

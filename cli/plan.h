@@ -35,6 +35,7 @@ struct RunPlan {
   pipeline::SkipSwitches skip;
   int reference_samples = 0;  ///< 0: no reference
   bool images = true;
+  bool calibrated = true;  ///< fitted numbers and intervals, where there are
   std::vector<Assignment> overrides;
 };
 

@@ -34,6 +34,7 @@ class RunTraces {
     view.resolution = {spec.width_px, spec.height_px};
     view.point_lights = spec.point_lights;
     view.shadows = spec.shadows;
+    view.lights = light_profile_from_name(spec.lights).value_or(algos::LightProfile::scene);
     const algos::TechniqueChoice technique = algos::parse_technique(spec.technique);
     if (!scene_ || !(scene_->plan() == view)) scene_ = std::make_unique<SceneView>(view, silent_);
     std::shared_ptr<const WorkTrace>& known =

@@ -29,7 +29,8 @@ PointResult Simulator::run(const algos::TechniqueChoice& technique, const GpuCon
   point.timing = time_frame(point.emulation->trace, gpu, plan_.engine, plan_.timing);
   point.timing_wall_s = seconds_since(start);
   check_invariants(point.emulation->trace, point.timing, gpu);
-  add_interval(point.timing, point.emulation->trace, gpu, algos::technique_text(technique));
+  if (plan_.calibrated)
+    add_interval(point.timing, point.emulation->trace, gpu, algos::technique_text(technique));
   if (reference_)
     point.image_error = pipeline::compare(point.emulation->color, reference_->image, &point.flip_map);
   return point;

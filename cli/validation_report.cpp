@@ -137,10 +137,13 @@ Table worst_table(const Experiment& experiment, const Validation& validation, st
   return table;
 }
 
-std::vector<std::string> broken_statements(const Validation& validation, const std::string& path) {
+std::vector<std::string> broken_statements(const Validation& validation,
+                                           const std::vector<std::string>& papers, const std::string& path) {
   const CsvFile file = read_csv(path);
+  const std::string about = papers.empty() ? "all" : fmt::format("{}", fmt::join(papers, " "));
   std::vector<std::string> broken;
   for (const std::vector<std::string>& row : file.rows) {
+    if (row[file.column("papers")] != about) continue;
     const std::string& split = row[file.column("split")];
     const std::string& figure = row[file.column("figure")];
     const double value = measured(validation, split, figure);

@@ -22,7 +22,7 @@ Table worst_table(const cost_models::Experiment& experiment, const cost_models::
 
 /// What an accuracy statement says does not hold; empty when all do. configs/calibration/accuracy.csv.
 std::vector<std::string> broken_statements(const cost_models::Validation& validation,
-                                           const std::string& path);
+                                           const std::vector<std::string>& papers, const std::string& path);
 
 /// "grass, sbaa_top:n=2,msaa=8 on hd5870, frame (sbaa_table2_frame_time_memory:12)".
 std::string cell_name(const cost_models::Cell& cell);

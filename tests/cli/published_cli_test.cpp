@@ -60,5 +60,47 @@ TEST(Published, MappingMistakesAreReportedWithTheirLine) {
   EXPECT_NE(outcome.err.find("uses.csv:"), std::string::npos) << outcome.err;
 }
 
+// The guard of CI: one paper whose rows need seconds. The statements about all papers are for `hwsim
+// validate`.
+TEST(Published, AStatementThatNoLongerHoldsEndsInStatusFour) {
+  const Workplace place;
+  std::filesystem::copy(hwsim::test::source_dir() + "/configs", place / "configs",
+                        std::filesystem::copy_options::recursive);
+  ASSERT_NE(place.read("configs/calibration/accuracy.csv").find("\naxaa,"), std::string::npos);
+  const Outcome stated = place.hwsim("validate --paper axaa --json", "HWSIM_CONFIG_DIR=configs");
+  EXPECT_EQ(stated.status, 0) << stated.err;
+  const json report = json::parse(stated.out);
+  EXPECT_EQ(report["splits"]["in_sample"]["cells"], 14);
+  EXPECT_TRUE(report["not_run"].empty()) << report["not_run"];
+  place.write(
+      "configs/calibration/accuracy.csv",
+      "papers,split,figure,low,high\naxaa,in_sample,mape_pct,0,0.01\nall,in_sample,mape_pct,0,0.01\n");
+  const Outcome broken = place.hwsim("validate --paper axaa -q", "HWSIM_CONFIG_DIR=configs");
+  EXPECT_EQ(broken.status, 4);
+  EXPECT_NE(broken.err.find("accuracy: mape_pct of in_sample"), std::string::npos) << broken.err;
+}
+
+// Neither scenes, techniques nor engines may know the times that they are compared with: without the tables
+// and what was fitted to them, every pass stays the same.
+TEST(Published, PredictionsNeedNoPublishedTimes) {
+  const Workplace place;
+  std::filesystem::create_directories(place / "bare");
+  std::filesystem::copy(hwsim::test::source_dir() + "/configs/gpus", place / "bare/gpus",
+                        std::filesystem::copy_options::recursive);
+  for (const char* technique : {"sbaa_merge:msaa=4", "sss_cs", "agaa:msaa=8", "axaa"}) {
+    const std::string run =
+        "run car_body:triangles=20000 -g gtx980 --resolution 160x90 --no-image --no-cache "
+        "--set timing.calibrated=false --json -q -t " +
+        std::string(technique);
+    const Outcome with = place.hwsim(run), without = place.hwsim(run, "HWSIM_CONFIG_DIR=bare");
+    ASSERT_EQ(with.status, 0) << with.err;
+    ASSERT_EQ(without.status, 0) << without.err;
+    const json a = json::parse(with.out), b = json::parse(without.out);
+    ASSERT_FALSE(a["passes"].empty());
+    EXPECT_EQ(a["passes"], b["passes"]) << technique;
+    EXPECT_EQ(a["frame"], b["frame"]) << technique;
+  }
+}
+
 }  // namespace
 }  // namespace hwsim::cli::test

@@ -144,9 +144,11 @@ TEST_F(RunTest, CsvHasOneHeaderAndRecordsOfItsLength) {
   EXPECT_GT(lines, 1u);
 }
 
-TEST_F(RunTest, HeadlineSaysThatItIsUncalibrated) {
-  const Outcome outcome = run("--no-image --out result");
-  EXPECT_NE(outcome.out.find(" ms uncalibrated"), std::string::npos) << outcome.out;
+TEST_F(RunTest, HeadlineSaysHowSureItIs) {
+  const Outcome outcome = run("--no-image --out result -g gtx980");
+  EXPECT_NE(outcome.out.find(" ms ["), std::string::npos) << outcome.out;
+  const Outcome documented = run("--no-image --out documented -g gtx980 --set timing.calibrated=false");
+  EXPECT_NE(documented.out.find(" ms uncalibrated"), std::string::npos) << documented.out;
 }
 
 TEST_F(RunTest, SeveralTechniquesGiveOneSummary) {
