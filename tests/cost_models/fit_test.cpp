@@ -156,10 +156,18 @@ TEST(Fit, FindsTheTruthFromTheDeclaredStart) {
   const std::vector<double> ms = predictions(s.experiment, f);
   for (std::size_t i = 0; i < ms.size(); ++i)
     EXPECT_NEAR(ms[i] / s.experiment.cells[i].published, 1.0, 1e-3) << i;
-  for (std::size_t k = 0; k < s.truth.size(); ++k)
-    if (f.estimates[k].identified && !f.estimates[k].at_bound) {
-      EXPECT_NEAR(f.log_values[k], s.truth[k], 0.01) << s.experiment.parameters[k].id();
-    }
+  // A number that limits no pass may end anywhere beyond: times do not know it.
+  Predictor predictor(s.experiment, 1);
+  predictor.evaluate(s.truth, true);
+  std::size_t found = 0;
+  for (std::size_t k = 0; k < s.truth.size(); ++k) {
+    double most = 0.0;
+    for (std::size_t i = 0; i < ms.size(); ++i) most = std::max(most, std::abs(predictor[i].gradient[k]));
+    if (most < 0.1 || f.estimates[k].at_bound) continue;
+    EXPECT_NEAR(f.log_values[k], s.truth[k], 0.01) << s.experiment.parameters[k].id();
+    ++found;
+  }
+  EXPECT_GT(found, 6u);
 }
 
 TEST(Fit, IsDeterministic) {
