@@ -75,7 +75,7 @@ TEST(Published, AStatementThatNoLongerHoldsEndsInStatusFour) {
   place.write(
       "configs/calibration/accuracy.csv",
       "papers,split,figure,low,high\naxaa,in_sample,mape_pct,0,0.01\nall,in_sample,mape_pct,0,0.01\n");
-  const Outcome broken = place.hwsim("validate --paper axaa -q", "HWSIM_CONFIG_DIR=configs");
+  const Outcome broken = place.hwsim("validate --paper axaa --progress never", "HWSIM_CONFIG_DIR=configs");
   EXPECT_EQ(broken.status, 4);
   EXPECT_NE(broken.err.find("accuracy: mape_pct of in_sample"), std::string::npos) << broken.err;
 }
