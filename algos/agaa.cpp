@@ -403,7 +403,8 @@ FrameGraph build_agaa(const FrameRequest& request, const Parameters& parameters)
 }
 
 constexpr ParameterInfo kParameters[] = {
-    {"c", 1, 0, 3, "aggregates a pixel; three take the memory of four where they are color samples", "1|2|3|4"},
+    {"c", 1, 0, 3, "aggregates a pixel; three take the memory of four where they are color samples",
+     "1|2|3|4"},
     {"msaa", 1, 0, 3, "visibility samples a pixel", "4|8|16|32"},
     {"k", 0.1, 0.001, 10, "length at which positions weigh as much as normals, m"},
     {"t", 0.02, 0, 1, "distance that keeps aggregates apart"},

@@ -275,10 +275,11 @@ const FragmentProgram& sss_composite_program() {
 const FragmentProgram& sss_sum_composite_program(bool floats) {
   using pipeline::HWY_NAMESPACE::describe_fragment_shader;
   static const FragmentProgram programs[] = {
-      describe_fragment_shader<shaders::SumCompositeShader<false>>(
-          "sss_fixed_composite",
-          [](FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_fixed_composite)
-                                                (b, u); }),
+      describe_fragment_shader<shaders::SumCompositeShader<false>>("sss_fixed_composite",
+                                                                   [](FragmentBatch& b, const void* u) {
+                                                                     HWY_DYNAMIC_DISPATCH(run_fixed_composite)
+                                                                     (b, u);
+                                                                   }),
       describe_fragment_shader<shaders::SumCompositeShader<true>>(
           "sss_float_composite", [](FragmentBatch& b, const void* u) {
             HWY_DYNAMIC_DISPATCH(run_float_composite)(b, u);

@@ -5,7 +5,8 @@
 #include <cstring>
 
 namespace hwsim {
-static_assert(std::endian::native == std::endian::little, "files and keys are little-endian and read by memcpy");
+static_assert(std::endian::native == std::endian::little,
+              "files and keys are little-endian and read by memcpy");
 
 void ContentHash::add_word(std::uint64_t word) {
   constexpr std::uint64_t kPrime = 0x100000001b3u;

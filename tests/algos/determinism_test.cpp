@@ -28,7 +28,8 @@ class Determinism : public ::testing::TestWithParam<std::string> {
   static std::vector<FrameSetup> setups() {
     const bool large = GetParam().starts_with("ssaa16x") || GetParam().starts_with("ssaa64x");
     const int width = large ? 80 : 128, height = large ? 45 : 72;
-    return {{GetParam(), "sponza_hall:bays=4", width, height}, {GetParam(), "grass:blades=2000", width, height}};
+    return {{GetParam(), "sponza_hall:bays=4", width, height},
+            {GetParam(), "grass:blades=2000", width, height}};
   }
 };
 
