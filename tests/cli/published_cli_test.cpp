@@ -80,6 +80,20 @@ TEST(Published, AStatementThatNoLongerHoldsEndsInStatusFour) {
   EXPECT_NE(broken.err.find("accuracy: mape_pct of in_sample"), std::string::npos) << broken.err;
 }
 
+// A new key of GPU files changes their hashes: the calibrated files are to be written anew then.
+TEST(Published, ShippedCalibrationIsThatOfTheShippedGpus) {
+  const Workplace place;
+  for (const char* point :
+       {"axaa -g hd4600", "axaa -g hd7650m", "sbaa_top -g hd5870", "sss_gs -g gtx470", "agaa -g gtx980"}) {
+    SCOPED_TRACE(point);
+    const Outcome outcome = place.hwsim(
+        "run wires --resolution 64x36 --no-image --force --json --out result -t " + std::string(point));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("\"support\": \"calibrated\""), std::string::npos)
+        << outcome.out.substr(0, 600);
+  }
+}
+
 // Neither scenes, techniques nor engines may know the times that they are compared with: without the tables
 // and what was fitted to them, every pass stays the same.
 TEST(Published, PredictionsNeedNoPublishedTimes) {
