@@ -144,7 +144,7 @@ inline void write_plane(const PlaneTile& tile, const DepthPlane& now, const Samp
       left |= to[s];
     }
     if (left == 0) continue;
-    tile.planes()[kept] = tile.planes()[p];
+    if (kept != p) tile.planes()[kept] = tile.planes()[p];
     nearest = std::min(nearest, tile.planes()[kept].nearest);
     farthest = std::max(farthest, tile.planes()[kept].farthest);
     ++kept;
