@@ -33,6 +33,24 @@ TEST(ShippedGpus, AllLoadAndSayWhereEveryFileValueComesFrom) {
   }
 }
 
+// A fit writes whole files: a key that a GPU's own file gained since would be lost in them.
+TEST(ShippedGpus, CalibratedFilesHoldEveryKeyOfTheFilesThatTheyReplace) {
+  const std::string calibrated_dir = hwsim::test::source_dir() + "/configs/calibrated";
+  int files = 0;
+  for (const std::string& id : list_gpus(kConfigDir)) {
+    const std::string path = calibrated_dir + "/" + id + ".toml";
+    if (!std::filesystem::exists(path)) continue;
+    ++files;
+    const GpuConfig fitted = load_gpu(path, {}, {}, "");
+    for (const auto& [key, origin] : shipped(id).origins) {
+      if (origin.layer != Origin::Layer::file) continue;
+      EXPECT_TRUE(fitted.origins.contains(key) && fitted.origins.at(key).layer == Origin::Layer::file)
+          << id << ": " << key << "; write the files anew with `hwsim fit --out configs/calibrated --force`";
+    }
+  }
+  EXPECT_EQ(files, 7);
+}
+
 TEST(ShippedGpus, ShowRoundTrips) {
   for (const std::string& id : list_gpus(kConfigDir)) {
     const auto path = std::filesystem::path(::testing::TempDir()) / ("hwsim_shown_" + id + ".toml");
