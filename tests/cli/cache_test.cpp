@@ -1,6 +1,5 @@
 // Frames are emulated once: what comes from the cache is what was emulated, and damage is never believed.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <chrono>
 #include <filesystem>
@@ -44,16 +43,6 @@ class CacheTest : public testing::Test {
   Workplace place;
   std::string messages;
 };
-
-/// Processor time of the programs that ended, in ms.
-double children_ms() {
-  rusage usage{};
-  getrusage(RUSAGE_CHILDREN, &usage);
-  const auto ms = [](const timeval& t) {
-    return 1e3 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_usec);
-  };
-  return ms(usage.ru_utime) + ms(usage.ru_stime);
-}
 
 TEST_F(CacheTest, SecondRunGivesTheSameBytesWithoutEmulating) {
   EXPECT_FALSE(cached("--reference 1"));
