@@ -79,20 +79,23 @@ TEST(Detailed, AnUnloadedSubgroupTakesTheSumOfItsLatencies) {
   EXPECT_NEAR(time_one(pass, gpu, Engine::detailed).time_ns, 20 * 10 + 700.0, 1.0);
 }
 
-TEST(Detailed, ResidencyHidesLatencyUpToTheGate) {
-  // Subgroups of 32 one-clock operations that then wait 100 clocks: 101 / 1 of them keep a core busy.
+/// Subgroups of 32 one-clock operations that then wait 100 clocks, so many a core: 101 / 1 of them keep a
+/// core busy.
+double time_of_waiting_subgroups_ns(int subgroups_a_core, double residents) {
   PassCounters c;
-  c.stats.fragment_shader_invocations = 32 * 10 * 800;
+  c.stats.fragment_shader_invocations = static_cast<std::uint64_t>(32 * 10 * subgroups_a_core);
   c.shader.alu_issued_lane_ops_w32 = c.stats.fragment_shader_invocations;
   c.shader.memory_chain_lane_ops = c.stats.fragment_shader_invocations;
   const PassWork pass = repeated(PassKind::full_screen, c, 1);
   GpuConfig gpu = sample_gpu();
   gpu.tex_latency_cycles = 100;
   gpu.raster_px_per_engine_clk = gpu.export_px_per_clk = 1e5;
-  const auto time_with = [&](double residents) {
-    gpu.subgroups_per_core_max = residents;
-    return time_one(pass, gpu, Engine::detailed).time_ns;
-  };
+  gpu.subgroups_per_core_max = residents;
+  return time_one(pass, gpu, Engine::detailed).time_ns;
+}
+
+TEST(Detailed, ResidencyHidesLatencyUpToTheGate) {
+  const auto time_with = [](double residents) { return time_of_waiting_subgroups_ns(800, residents); };
   for (const double residents : {101.0, 200.0}) {  // at the gate the pipe is always busy; beyond it, no gain
     EXPECT_GE(time_with(residents), 800.0);
     EXPECT_LE(time_with(residents), 800.0 + 100.0 + 40.0);
@@ -104,18 +107,7 @@ TEST(Detailed, ResidencyHidesLatencyUpToTheGate) {
 // 101 residents keep the pipe of the test before busy: one less leaves it idle a clock in 101, one more
 // brings nothing.
 TEST(Detailed, TheGateOfResidencyIsOneSubgroupWide) {
-  PassCounters c;
-  c.stats.fragment_shader_invocations = 32 * 10 * 8000;
-  c.shader.alu_issued_lane_ops_w32 = c.stats.fragment_shader_invocations;
-  c.shader.memory_chain_lane_ops = c.stats.fragment_shader_invocations;
-  const PassWork pass = repeated(PassKind::full_screen, c, 1);
-  GpuConfig gpu = sample_gpu();
-  gpu.tex_latency_cycles = 100;
-  gpu.raster_px_per_engine_clk = gpu.export_px_per_clk = 1e5;
-  const auto time_with = [&](double residents) {
-    gpu.subgroups_per_core_max = residents;
-    return time_one(pass, gpu, Engine::detailed).time_ns;
-  };
+  const auto time_with = [](double residents) { return time_of_waiting_subgroups_ns(8000, residents); };
   EXPECT_NEAR(time_with(100) - time_with(101), 8000.0 / 100, 5.0);
   EXPECT_NEAR(time_with(102) - time_with(103), 0.0, 5.0);  // at 101, halves of two subgroups still collide
 }
