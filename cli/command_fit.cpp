@@ -83,9 +83,7 @@ void write_calibration(const Experiment& experiment, const Validation& validatio
   const cost_models::Calibration calibration = cost_models::make_calibration(experiment, validation);
   for (const GpuConfig& gpu : experiment.gpus)
     if (calibration.techniques.contains(gpu.id))
-      write_file(directory.path(gpu.id + ".toml"),
-                 "# Written by `hwsim fit`: documented values, and fitted ones where provenance says so.\n" +
-                     show(cost_models::calibrated_gpu(gpu, calibration), false));
+      write_file(directory.path(gpu.id + ".toml"), cost_models::calibrated_file(gpu, calibration));
   write_file(directory.path("calibration.json"), cost_models::to_json(calibration));
   write_file(directory.path("manifest.json"), "{\"written_by\": \"hwsim fit\"}\n");
   directory.commit();

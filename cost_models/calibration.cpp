@@ -7,6 +7,7 @@
 #include "cost_models/covariance.h"
 #include "cost_models/predictor.h"
 #include "hwsim/config/gpu_keys.h"
+#include "hwsim/config/gpu_show.h"
 
 namespace hwsim::cost_models {
 namespace {
@@ -73,6 +74,18 @@ std::vector<const CalibratedParameter*> parameters_of(const Calibration& calibra
   return found;
 }
 
+bool changed(const Calibration& calibration, const GpuConfig& gpu, const std::string& hash) {
+  const std::set<std::string> keys = hashed_keys();
+  const auto new_and_set = [&](const std::string& key) {
+    const auto origin = gpu.origins.find(key);
+    return !calibration.gpu_keys.contains(key) && origin != gpu.origins.end() &&
+           (origin->second.layer == Origin::Layer::overlay ||
+            origin->second.layer == Origin::Layer::command_line);
+  };
+  return content_hash(gpu, calibration.gpu_keys) != hash ||
+         std::any_of(keys.begin(), keys.end(), new_and_set);
+}
+
 double quantile_of(const Calibration& calibration, std::initializer_list<Split> splits) {
   double widest = 0.0;
   for (const Split split : splits)
@@ -105,8 +118,10 @@ Calibration make_calibration(const Experiment& experiment, const Validation& val
   for (std::size_t i = 0; i < fitted.size(); ++i)
     if (fitted[i])
       c.techniques[experiment.cells[i].run.gpu].insert(technique_id(experiment.cells[i].run.technique));
+  c.gpu_keys = hashed_keys();
   for (const GpuConfig& gpu : experiment.gpus)
-    if (c.techniques.contains(gpu.id)) c.gpu_hashes[gpu.id] = content_hash(calibrated_gpu(gpu, c));
+    if (c.techniques.contains(gpu.id))
+      c.gpu_hashes[gpu.id] = content_hash(calibrated_gpu(gpu, c), c.gpu_keys);
   return c;
 }
 
@@ -130,10 +145,18 @@ GpuConfig calibrated_gpu(const GpuConfig& documented, const Calibration& calibra
   return gpu;
 }
 
+std::string calibrated_file(const GpuConfig& documented, const Calibration& calibration) {
+  std::set<std::string> keys;
+  for (const CalibratedParameter* p : parameters_of(calibration, documented.id)) keys.insert(p->name);
+  return "# Written by `hwsim fit`: what the papers' times say about this GPU beyond its documents.\n" +
+         show_extension(calibrated_gpu(documented, calibration), documented.id, keys);
+}
+
 std::string to_json(const Calibration& c) {
   Json json = {{"schema_version", c.version}, {"residual_log_sd", c.residual_log_sd}};
   json["quantile90"] = c.quantile90;
   json["techniques"] = c.techniques;
+  json["gpu_keys"] = c.gpu_keys;
   json["gpu_hashes"] = c.gpu_hashes;
   json["parameters"] = Json::array();
   for (const CalibratedParameter& p : c.parameters) json["parameters"].push_back(parameter_json(p));
@@ -154,6 +177,7 @@ Calibration calibration_from_json(const std::string& text, const std::string& pa
   c.residual_log_sd = json.at("residual_log_sd");
   c.quantile90 = json.at("quantile90").get<std::map<std::string, double>>();
   c.techniques = json.at("techniques").get<std::map<std::string, std::set<std::string>>>();
+  c.gpu_keys = json.at("gpu_keys").get<std::set<std::string>>();
   c.gpu_hashes = json.at("gpu_hashes").get<std::map<std::string, std::string>>();
   c.held_out_ms = json.at("held_out_ms").get<std::map<std::string, double>>();
   for (const Json& p : json.at("parameters")) c.parameters.push_back(parameter_from(p));
@@ -194,7 +218,7 @@ FrameInterval frame_interval(const Calibration& calibration, const WorkTrace& tr
   };
   const bool elsewhere = std::any_of(calibration.techniques.begin(), calibration.techniques.end(),
                                      [&](const auto& entry) { return fitted(entry.first); });
-  if (content_hash(gpu) != hash->second || !elsewhere)
+  if (changed(calibration, gpu, hash->second) || !elsewhere)
     result.support = Support::extrapolated;
   else
     result.support = fitted(gpu.id) ? Support::calibrated : Support::interpolated;

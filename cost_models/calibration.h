@@ -1,6 +1,7 @@
 #pragma once
-// What a fit leaves behind: configs/calibrated/GPU.toml, complete GPU files with fitted values, and
-// calibration.json beside them, from which `run` takes intervals and `reproduce` predictions.
+// What a fit leaves behind: configs/calibrated/GPU.toml, which hold the fitted values and take the rest from
+// configs/gpus/GPU.toml, and calibration.json beside them, from which `run` takes intervals and `reproduce`
+// predictions.
 #include <array>
 #include <map>
 #include <optional>
@@ -29,13 +30,17 @@ struct Calibration {
   std::map<std::string, double> quantile90;                 ///< by split
   std::map<std::string, std::set<std::string>> techniques;  ///< by GPU: those with fitted rows
   std::map<std::string, double> held_out_ms;                ///< by row: by the fit that did not see its scene
-  std::map<std::string, std::string> gpu_hashes;            ///< content of each calibrated GPU file
+  std::set<std::string> gpu_keys;                           ///< that GPUs had when they were fitted
+  std::map<std::string, std::string> gpu_hashes;            ///< of each calibrated GPU: the values of these
 };
 
 Calibration make_calibration(const Experiment& experiment, const Validation& validation);
 
 /// The GPU with its fitted values; each says that it is fitted, and its interval.
 GpuConfig calibrated_gpu(const GpuConfig& documented, const Calibration& calibration);
+
+/// Its file: the fitted keys alone. It has the id of the documented GPU, and extends it.
+std::string calibrated_file(const GpuConfig& documented, const Calibration& calibration);
 
 std::string to_json(const Calibration& calibration);
 /// Throws InputError M006 for a damaged file.
@@ -50,7 +55,8 @@ struct FrameInterval {
 };
 
 /// 90 % interval of a frame. calibrated: technique and GPU as fitted; interpolated: the technique was fitted
-/// on another GPU; extrapolated: a technique without published times, or changed numbers of the GPU.
+/// on another GPU; extrapolated: a technique without published times, or changed numbers of the GPU. (A key
+/// that came after the fit changes a GPU when an overlay or the command line sets it.)
 FrameInterval frame_interval(const Calibration& calibration, const WorkTrace& trace, const GpuConfig& gpu,
                              const std::string& technique, Engine engine);
 

@@ -32,7 +32,7 @@ struct Linearization {
 
 Linearization linearize(const Experiment& experiment, const std::vector<bool>& use,
                         const std::vector<std::size_t>& free, const FitOptions& options, const Fit& fit) {
-  Predictor predictor(experiment, options.jobs);
+  Predictor predictor(experiment, options.jobs, use);
   predictor.evaluate(fit.log_values, true);
   Linearization result;
   result.rows.resize(static_cast<Eigen::Index>(fit.fitted_values), static_cast<Eigen::Index>(free.size()));

@@ -19,8 +19,9 @@ constexpr std::size_t kValuesPerParameter = 4;
 /// All predictions at a point, computed once for every residual of it.
 class SharedEvaluation : public ceres::EvaluationCallback {
  public:
-  SharedEvaluation(const Experiment& experiment, const std::vector<double>& values, int jobs)
-      : predictor_(experiment, jobs), values_(values) {}
+  SharedEvaluation(const Experiment& experiment, const std::vector<bool>& use,
+                   const std::vector<double>& values, int jobs)
+      : predictor_(experiment, jobs, use), values_(values) {}
 
   void PrepareForEvaluation(bool jacobians, bool new_point) override {
     if (!new_point && (has_gradients_ || !jacobians)) return;
@@ -105,7 +106,7 @@ class Solve {
  public:
   Solve(const Experiment& experiment, const std::vector<bool>& use, std::vector<double> start,
         const FitOptions& options, int index)
-      : experiment_(experiment), values_(std::move(start)), shared_(experiment, values_, options.jobs) {
+      : experiment_(experiment), values_(std::move(start)), shared_(experiment, use, values_, options.jobs) {
     // A redescending loss sees no slope far away: a convex one brings the values near first.
     if (options.convex_first) solve(use, options, index, Loss::huber);
     solve(use, options, index, Loss::cauchy);

@@ -2,6 +2,7 @@
 
 #include <ceres/jet.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <map>
@@ -67,8 +68,9 @@ struct PartedTime {
 };
 
 template <class T>
-PartedTime<T> parted_time(const PassWork& pass, const GpuRates<T>& rates, bool waits) {
-  const PassTime<T> time = time_pass(pass, rates, Engine::queue, waits);
+PartedTime<T> parted_time(const PassWork& pass, const PassShape& shape, const GpuRates<T>& rates,
+                          bool waits) {
+  const PassTime<T> time = time_costs(chunk_costs(pass, shape, rates), rates, Engine::queue, waits);
   return {time.time_ns - time.overhead_ns, time.overhead_ns, pass.kind == PassKind::draw};
 }
 
@@ -104,61 +106,16 @@ SceneFactors factors_of(const std::vector<Parameter>& parameters, const std::str
   return f;
 }
 
-/// A replay's passes with their times; `unlit` is empty where no factor asks for it.
-template <class T>
-struct ReplayTimes {
-  std::vector<const PartedTime<T>*> lit, unlit;
-};
-
-template <class T>
-void predict_replay(const Experiment& experiment, const Replay& replay, ReplayTimes<T> times,
-                    const std::vector<std::size_t>& active, std::span<const double> log_values,
-                    std::vector<Prediction>& out) {
+bool has_reach(const Experiment& experiment, const Replay& replay) {
   const std::string& scene = experiment.cells[replay.cells.front()].scene_group;
-  const SceneFactors f = factors_of(experiment.parameters, scene, log_values);
-  const Present present = present_of(experiment.parameters, active, log_values);
-  if (f.reach_index < 0) times.unlit.clear();
-
-  for (const std::size_t cell : replay.cells) {
-    T ms(0.0);
-    double by_load = 0.0, by_reach = 0.0;
-    for (std::size_t p = 0; p < times.lit.size(); ++p) {
-      if (!pass_matches(experiment.cells[cell].passes, replay.trace->passes[p].name)) continue;
-      const PartedTime<T>& lit = *times.lit[p];
-      const double load = lit.draw ? f.load : 1.0;
-      T work = lit.work;
-      if (!times.unlit.empty()) {
-        const T of_lights = lit.work - times.unlit[p]->work;
-        work = times.unlit[p]->work + f.reach * of_lights;
-        by_reach += f.reach * load * value_of(of_lights);
-      }
-      if (lit.draw) by_load += load * value_of(work);
-      ms += load * work + lit.fixed;
-    }
-    const bool presents = pass_matches(experiment.cells[cell].passes, kPresentPass);
-    const double repeat = experiment.cells[cell].repeat;
-    ms *= repeat;
-    by_load *= repeat;
-    by_reach *= repeat;
-    if (presents) ms += present.ns;
-    Prediction& prediction = out[cell];
-    const double total = value_of(ms);
-    prediction.ms = total * 1e-6;
-    if constexpr (!std::is_same_v<T, double>) {
-      prediction.gradient.assign(experiment.parameters.size(), 0.0);
-      for (std::size_t lane = 0; lane < active.size(); ++lane)
-        prediction.gradient[active[lane]] = ms.v[static_cast<Eigen::Index>(lane)] / total;
-      if (presents && present.index >= 0)
-        prediction.gradient[static_cast<std::size_t>(present.index)] = present.ns / total;
-      if (f.load_index >= 0) prediction.gradient[static_cast<std::size_t>(f.load_index)] = by_load / total;
-      if (f.reach_index >= 0) prediction.gradient[static_cast<std::size_t>(f.reach_index)] = by_reach / total;
-    }
-  }
+  return std::any_of(experiment.parameters.begin(), experiment.parameters.end(), [&](const Parameter& p) {
+    return p.scope == Scope::scene && p.member == scene && p.name == kLightReach;
+  });
 }
 
 }  // namespace
 
-Predictor::Predictor(const Experiment& experiment, int jobs)
+Predictor::Predictor(const Experiment& experiment, int jobs, const std::vector<bool>& wanted)
     : experiment_(experiment), jobs_(jobs), predictions_(experiment.cells.size()) {
   for (const GpuConfig& gpu : experiment.gpus) {
     std::vector<std::size_t> own;
@@ -173,26 +130,38 @@ Predictor::Predictor(const Experiment& experiment, int jobs)
                                              " are possible"});
     active_.push_back(std::move(own));
   }
-  collect_passes();
+  collect_passes(wanted);
 }
 
-void Predictor::collect_passes() {
+void Predictor::collect_passes(const std::vector<bool>& wanted) {
   std::map<std::tuple<std::size_t, bool, std::uint64_t>, std::size_t> known;
-  const auto add = [&](const WorkTrace& trace, const std::vector<std::uint64_t>& keys, std::size_t gpu) {
-    std::vector<std::size_t> indices;
-    for (std::size_t p = 0; p < trace.passes.size(); ++p) {
-      const bool waits = trace.passes[p].barrier_before || p == 0;
-      std::size_t index = passes_.size();
-      if (!keys.empty()) index = known.emplace(std::tuple(gpu, waits, keys[p]), index).first->second;
-      if (index == passes_.size()) passes_.push_back({&trace.passes[p], gpu, waits});
-      indices.push_back(index);
-    }
-    return indices;
+  std::map<const PassWork*, std::size_t> of_replay;
+  const auto place = [&](const WorkTrace& trace, const std::vector<std::uint64_t>& keys, std::size_t gpu,
+                         std::size_t p) {
+    const PassWork& pass = trace.passes[p];
+    if (const auto found = of_replay.find(&pass); found != of_replay.end()) return found->second;
+    const bool waits = pass.barrier_before || p == 0;
+    std::size_t index = passes_.size();
+    if (!keys.empty()) index = known.emplace(std::tuple(gpu, waits, keys[p]), index).first->second;
+    if (index == passes_.size()) passes_.push_back({&pass, gpu, waits, shape_of(pass)});
+    of_replay[&pass] = index;
+    return index;
   };
-  for (const Replay& replay : experiment_.replays) {
-    lit_.push_back(add(*replay.trace, replay.pass_keys, replay.gpu));
-    unlit_.push_back(replay.unlit ? add(*replay.unlit, replay.unlit_pass_keys, replay.gpu)
-                                  : std::vector<std::size_t>());
+  for (std::size_t r = 0; r < experiment_.replays.size(); ++r) {
+    const Replay& replay = experiment_.replays[r];
+    of_replay.clear();  // replays of another GPU may share the trace
+    const bool unlit = replay.unlit && has_reach(experiment_, replay);
+    for (const std::size_t cell : replay.cells) {
+      if (!wanted.empty() && !wanted[cell]) continue;
+      const std::string& patterns = experiment_.cells[cell].passes;
+      CellPasses of{cell, r, pass_matches(patterns, kPresentPass), {}};
+      for (std::size_t p = 0; p < replay.trace->passes.size(); ++p) {
+        if (!pass_matches(patterns, replay.trace->passes[p].name)) continue;
+        const std::size_t lit = place(*replay.trace, replay.pass_keys, replay.gpu, p);
+        of.passes.push_back({lit, unlit ? place(*replay.unlit, replay.unlit_pass_keys, replay.gpu, p) : lit});
+      }
+      cells_.push_back(std::move(of));
+    }
   }
 }
 
@@ -212,20 +181,53 @@ void Predictor::evaluate_as(std::span<const double> log_values) {
   std::atomic<std::size_t> next{0};
   const auto work = [&] {
     for (std::size_t i = next++; i < passes_.size(); i = next++)
-      times[i] = parted_time(*passes_[i].work, rates[passes_[i].gpu], passes_[i].waits);
+      times[i] = parted_time(*passes_[i].work, passes_[i].shape, rates[passes_[i].gpu], passes_[i].waits);
   };
   {
     std::vector<std::jthread> threads;
     for (int i = 1; i < jobs_; ++i) threads.emplace_back(work);
     work();
   }
-  for (std::size_t r = 0; r < experiment_.replays.size(); ++r) {
-    const Replay& replay = experiment_.replays[r];
-    ReplayTimes<T> of_replay;
-    for (const std::size_t i : lit_[r]) of_replay.lit.push_back(&times[i]);
-    for (const std::size_t i : unlit_[r]) of_replay.unlit.push_back(&times[i]);
-    predict_replay<T>(experiment_, replay, std::move(of_replay), active_[replay.gpu], log_values,
-                      predictions_);
+  for (const CellPasses& of : cells_) predict<T>(of, times, log_values);
+}
+
+template <class T, class Time>
+void Predictor::predict(const CellPasses& of, const std::vector<Time>& times,
+                        std::span<const double> log_values) {
+  const Cell& cell = experiment_.cells[of.cell];
+  const std::vector<std::size_t>& active = active_[experiment_.replays[of.replay].gpu];
+  const SceneFactors f = factors_of(experiment_.parameters, cell.scene_group, log_values);
+  const Present present = present_of(experiment_.parameters, active, log_values);
+  T ms(0.0);
+  double by_load = 0.0, by_reach = 0.0;
+  for (const auto& [lit, unlit] : of.passes) {
+    const double load = times[lit].draw ? f.load : 1.0;
+    T work = times[lit].work;
+    if (unlit != lit) {
+      const T of_lights = times[lit].work - times[unlit].work;
+      work = times[unlit].work + f.reach * of_lights;
+      by_reach += f.reach * load * value_of(of_lights);
+    }
+    if (times[lit].draw) by_load += load * value_of(work);
+    ms += load * work + times[lit].fixed;
+  }
+  ms *= cell.repeat;
+  by_load *= cell.repeat;
+  by_reach *= cell.repeat;
+  if (of.presents) ms += present.ns;
+  Prediction& prediction = predictions_[of.cell];
+  const double total = value_of(ms);
+  prediction.ms = total * 1e-6;
+  if constexpr (!std::is_same_v<T, double>) {
+    prediction.gradient.assign(experiment_.parameters.size(), 0.0);
+    const auto set = [&](std::ptrdiff_t index, double ns) {
+      if (index >= 0) prediction.gradient[static_cast<std::size_t>(index)] = ns / total;
+    };
+    for (std::size_t lane = 0; lane < active.size(); ++lane)
+      prediction.gradient[active[lane]] = ms.v[static_cast<Eigen::Index>(lane)] / total;
+    if (of.presents) set(present.index, present.ns);
+    set(f.load_index, by_load);
+    set(f.reach_index, by_reach);
   }
 }
 
@@ -247,7 +249,8 @@ Prediction predict_frame(const WorkTrace& trace, const GpuConfig& gpu, const std
     Jet total(0.0);
     const auto rates = derive_rates<Jet>(lift<Jet>(gpu, place));
     for (std::size_t p = 0; p < trace.passes.size(); ++p) {
-      const auto time = parted_time(trace.passes[p], rates, trace.passes[p].barrier_before || p == 0);
+      const PassWork& pass = trace.passes[p];
+      const auto time = parted_time(pass, shape_of(pass), rates, pass.barrier_before || p == 0);
       total += time.work + time.fixed;
     }
     prediction.ms = total.a * 1e-6;

@@ -83,7 +83,7 @@ void set_intervals(const Experiment& experiment, SplitResult& result) {
 
 std::vector<HeldOut> predict_marked(const Experiment& experiment, const Fit& fit,
                                     const std::vector<bool>& marked, const std::string& fold, int jobs) {
-  Predictor predictor(experiment, jobs);
+  Predictor predictor(experiment, jobs, marked);
   predictor.evaluate(fit.log_values, true);
   std::vector<HeldOut> cells;
   for (std::size_t i = 0; i < marked.size(); ++i) {

@@ -96,7 +96,7 @@ class Loader {
   }
 
   void extend(const Header& header, const std::string& child, const std::vector<std::string>& chain) {
-    const auto parent = find(header.extends, fs::path(child).parent_path().string(), header.extends_place);
+    const auto parent = find(header.extends, child, header.extends_place);
     if (!parent) return;
     std::error_code error;
     const std::string identity = fs::weakly_canonical(*parent, error).string();
@@ -167,16 +167,23 @@ class Loader {
     problems_.push_back(std::move(d));
   }
 
-  std::optional<std::string> find(const std::string& name, const std::string& folder, SourcePlace place) {
+  /// `child`: the file that extends `name`; a file may extend the one that it takes the place of, by its id.
+  std::optional<std::string> find(const std::string& name, const std::string& child, SourcePlace place) {
     std::error_code error;
+    const std::string folder = fs::path(child).parent_path().string();
     if (is_path(name)) {
       const fs::path path =
           fs::path(name).is_absolute() || folder.empty() ? fs::path(name) : fs::path(folder) / name;
       if (fs::is_regular_file(path, error)) return path.string();
     } else {
-      for (const std::string& dir : {folder, config_dir_})
-        if (!dir.empty() && fs::is_regular_file(fs::path(dir) / (name + ".toml"), error))
-          return (fs::path(dir) / (name + ".toml")).string();
+      std::optional<std::string> itself;
+      for (const std::string& dir : {folder, config_dir_}) {
+        const fs::path path = fs::path(dir) / (name + ".toml");
+        if (dir.empty() || !fs::is_regular_file(path, error)) continue;
+        if (!fs::equivalent(path, fs::path(child), error)) return path.string();
+        itself = path.string();
+      }
+      if (itself) return itself;
     }
     problems_.push_back(unknown_gpu(name, std::move(place)));
     base_missing_ = true;

@@ -1,10 +1,11 @@
 // A GpuConfig as text: TOML, JSON schema, hashes, one value.
+#include "hwsim/config/gpu_show.h"
+
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "hwsim/config/assign.h"
-#include "hwsim/config/gpu_config.h"
 #include "hwsim/config/gpu_keys.h"
 
 namespace hwsim {
@@ -53,6 +54,31 @@ std::string hash_of(const GpuConfig& config, Wanted wanted) {
   for (const Key& key : keys_of_const(config, copy))
     if (wanted(key.info)) text += std::string(key.info.name) + "=" + to_toml(value_in(key.slot)) + "\n";
   return fnv1a_hex(text);
+}
+
+std::string header_text(const GpuConfig& config) {
+  return "schema = 1\nkind = \"gpu\"\nid = " + to_toml(config.id) + "\n";
+}
+
+template <class Wanted>
+std::string keys_text(const GpuConfig& config, bool with_origin, Wanted wanted) {
+  GpuConfig copy;
+  std::string text, group;
+  for (const Key& key : keys_of_const(config, copy)) {
+    if (!wanted(key.info)) continue;
+    std::string name(key.info.name);
+    if (const auto dot = name.find('.'); dot != std::string::npos) {
+      if (name.substr(0, dot) != group) text += "\n[" + (group = name.substr(0, dot)) + "]\n";
+      name = name.substr(dot + 1);
+    }
+    const auto origin = config.origins.find(key.info.name);
+    const bool known = origin != config.origins.end();
+    const std::string value = to_toml(value_in(key.slot));
+    text += name + " = " + (known ? with_metadata(value, origin->second) : value);
+    if (with_origin && known) text += "  # " + one_line(origin->second.to_string());
+    text += "\n";
+  }
+  return text;
 }
 
 nlohmann::ordered_json scalar_schema(const Key& key) {
@@ -140,23 +166,13 @@ std::vector<KeyInfo> gpu_keys() {
 }
 
 std::string show(const GpuConfig& config, bool with_origin) {
-  GpuConfig copy;
-  std::string text = "schema = 1\nkind = \"gpu\"\nid = " + to_toml(config.id) + "\n";
-  std::string group;
-  for (const Key& key : keys_of_const(config, copy)) {
-    std::string name(key.info.name);
-    if (const auto dot = name.find('.'); dot != std::string::npos) {
-      if (name.substr(0, dot) != group) text += "\n[" + (group = name.substr(0, dot)) + "]\n";
-      name = name.substr(dot + 1);
-    }
-    const auto origin = config.origins.find(key.info.name);
-    const bool known = origin != config.origins.end();
-    const std::string value = to_toml(value_in(key.slot));
-    text += name + " = " + (known ? with_metadata(value, origin->second) : value);
-    if (with_origin && known) text += "  # " + one_line(origin->second.to_string());
-    text += "\n";
-  }
-  return text;
+  return header_text(config) + keys_text(config, with_origin, [](const KeyInfo&) { return true; });
+}
+
+std::string show_extension(const GpuConfig& config, const std::string& parent,
+                           const std::set<std::string>& keys) {
+  return header_text(config) + "extends = " + to_toml(parent) + "\n" +
+         keys_text(config, false, [&](const KeyInfo& info) { return keys.contains(std::string(info.name)); });
 }
 
 std::string value_of(const GpuConfig& config, std::string_view name) {
@@ -168,6 +184,19 @@ std::string value_of(const GpuConfig& config, std::string_view name) {
 
 std::string content_hash(const GpuConfig& config) {
   return hash_of(config, [](const KeyInfo& info) { return !is_label(info); });
+}
+
+std::set<std::string> hashed_keys() {
+  std::set<std::string> names;
+  for (const KeyInfo& info : gpu_keys())
+    if (!is_label(info)) names.emplace(info.name);
+  return names;
+}
+
+std::string content_hash(const GpuConfig& config, const std::set<std::string>& keys) {
+  std::string text;
+  for (const std::string& name : keys) text += name + "=" + value_of(config, name) + "\n";
+  return fnv1a_hex(text);
 }
 
 std::string functional_hash(const GpuConfig& config) {

@@ -19,19 +19,25 @@ struct PassTime {
   }
 };
 
+/// `shape` is shape_of(pass): a fit keeps it for hundreds of replays.
 template <class T>
-std::vector<ChunkCost<T>> chunk_costs(const PassWork& pass, const GpuRates<T>& rates) {
+std::vector<ChunkCost<T>> chunk_costs(const PassWork& pass, const PassShape& shape,
+                                      const GpuRates<T>& rates) {
   std::vector<ChunkCost<T>> costs;
   if (pass.kind == PassKind::clear) {
     costs.push_back(clear_cost(pass, rates));
-    costs.front().ns[at(Unit::fe)] = fe_ns(total(pass), rates);
+    costs.front().ns[at(Unit::fe)] = fe_ns(shape.sum, rates);
     return costs;
   }
-  const PassShape shape = shape_of(pass);
   const TrafficModel<T> model = model_traffic(shape, pass, rates);
   costs.reserve(pass.chunks.size());
   for (const PassCounters& chunk : pass.chunks) costs.push_back(chunk_cost(chunk, pass, model, rates));
   return costs;
+}
+
+template <class T>
+std::vector<ChunkCost<T>> chunk_costs(const PassWork& pass, const GpuRates<T>& rates) {
+  return chunk_costs(pass, shape_of(pass), rates);
 }
 
 /// Shaders' share of the time, split between vertex and pixel work: they run on the same cores.

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "cost_models/synthetic.h"
+#include "hwsim/config/gpu_show.h"
 
 namespace hwsim::cost_models::test {
 namespace {
@@ -98,19 +100,48 @@ TEST_F(CalibrationTest, DamagedJsonIsRefused) {
   EXPECT_THROW(calibration_from_json("{\"schema_version\": 1}", "c.json"), InputError);
 }
 
-TEST_F(CalibrationTest, GpuFilesAreCompleteAndLoad) {
+TEST_F(CalibrationTest, GpuFilesHoldWhatWasFittedAndExtendTheDocumentedGpu) {
   const Calibration c = make_calibration(experiment(), *validation_);
-  const GpuConfig fitted = calibrated_gpu(experiment().gpus.front(), c);
-  const std::string path = testing::TempDir() + "/a.toml";
-  std::ofstream(path) << show(fitted, false);
-  const GpuConfig loaded = load_gpu(path, {}, {}, testing::TempDir());
+  const GpuConfig& documented = experiment().gpus.front();
+  const GpuConfig fitted = calibrated_gpu(documented, c);
+  const std::filesystem::path base = testing::TempDir() + "/documented", own = testing::TempDir() + "/fitted";
+  std::filesystem::create_directories(base);
+  std::filesystem::create_directories(own);
+  std::ofstream(base / "a.toml") << show(documented, false);
+  std::ofstream(own / "a.toml") << calibrated_file(documented, c);
+  const GpuConfig loaded = load_gpu((own / "a.toml").string(), {}, {}, base.string());
   EXPECT_EQ(content_hash(loaded), content_hash(fitted));
+  std::set<std::string> in_file;
+  for (const auto& [key, origin] : loaded.origins)
+    if (origin.layer == Origin::Layer::file) in_file.insert(key);
+  EXPECT_EQ(in_file, (std::set<std::string>{"alu_efficiency_ratio", "dram_efficiency_ratio",
+                                            "pass_overhead_us", "setup_drawn_triangles_per_clk"}));
   const Origin& origin = loaded.origins.at("dram_efficiency_ratio");
   EXPECT_EQ(origin.provenance, Provenance::fitted);
   ASSERT_TRUE(origin.interval);
   EXPECT_LE((*origin.interval)[0], loaded.dram_efficiency_ratio);
   EXPECT_GE((*origin.interval)[1], loaded.dram_efficiency_ratio);
-  EXPECT_NE(loaded.dram_efficiency_ratio, experiment().gpus.front().dram_efficiency_ratio);
+  EXPECT_NE(loaded.dram_efficiency_ratio, documented.dram_efficiency_ratio);
+}
+
+// A key that hwsim gained since the fit, at the value that the GPU's file or the default gives, is no reason
+// to write the calibration anew; a user who sets it has another GPU.
+TEST_F(CalibrationTest, KeysThatCameAfterTheFitLeaveSupportAsItWas) {
+  Calibration c = make_calibration(experiment(), *validation_);
+  const GpuConfig gpu = calibrated_gpu(experiment().gpus.front(), c);
+  c.gpu_keys.erase("draw_cycles");
+  for (auto& [id, hash] : c.gpu_hashes) hash = content_hash(gpu, c.gpu_keys);
+  const auto trace = random_trace(4711);
+  const auto support = [&](Origin::Layer layer, double draw_cycles) {
+    GpuConfig used = gpu;
+    used.draw_cycles = draw_cycles;
+    used.origins["draw_cycles"].layer = layer;
+    return frame_interval(c, *trace, used, "t1", Engine::queue).support;
+  };
+  EXPECT_EQ(support(Origin::Layer::built_in, gpu.draw_cycles), Support::calibrated);
+  EXPECT_EQ(support(Origin::Layer::parent, 3.0), Support::calibrated);
+  EXPECT_EQ(support(Origin::Layer::overlay, 3.0), Support::extrapolated);
+  EXPECT_EQ(support(Origin::Layer::command_line, 3.0), Support::extrapolated);
 }
 
 TEST_F(CalibrationTest, FramesCarryIntervalsThatWidenWithDistance) {
