@@ -35,20 +35,22 @@ void LruStack::append(std::uint64_t line) {
   ++count_;
 }
 
-void LruStack::push(std::uint64_t line) {
-  if (count_ == lines_max_) {
+bool LruStack::push(std::uint64_t line) {
+  const bool full = count_ == lines_max_;
+  if (full) {
     const std::size_t oldest = place_of(0);
     present_[oldest] = false;
     add(oldest, -1);
     --count_;
   }
   append(line);
+  return full;
 }
 
-std::uint64_t LruStack::reuse(std::size_t depth) {
-  const std::size_t place = place_of(count_ - 1 - depth);
+std::uint64_t LruStack::reuse(std::size_t rank) {
+  const std::size_t place = place_of(rank);
   const std::uint64_t line = lines_[place];
-  if (depth == 0) return line;
+  if (rank + 1 == count_) return line;
   present_[place] = false;
   add(place, -1);
   --count_;
@@ -80,19 +82,59 @@ Survival survival(const std::array<std::uint64_t, kCacheSizes>& bytes, std::uint
   return part;
 }
 
-std::uint64_t AddressSource::next(const Survival& survival) {
-  const double u = random_.ratio();
+double missing(const Survival& survival, double lines) {
+  double size = kSmallestCacheBytes / 64.0, below = 0.0, beyond = 1.0;  // a cache of no lines has nothing
+  for (const double part : survival) {
+    if (lines < size) return beyond + (part - beyond) * (lines - below) / (size - below);
+    beyond = part;
+    below = size;
+    size *= 2.0;
+  }
+  return beyond;
+}
+
+void AddressSource::start(Run& run, const Survival& survival, double nearest_lines) {
+  const double u = random_.ratio() * missing(survival, nearest_lines);
   std::size_t k = 0;
   while (k < survival.size() && u < survival[k]) ++k;
-  if (k == survival.size()) return fresh();
+  run.fresh = true;
+  if (k == survival.size()) return;
   // Within a doubling: where the survival, taken as linear in the size, has the value u.
   const double high = kSmallestCacheBytes * std::ldexp(1.0, static_cast<int>(k)),
                low = k == 0 ? 0.0 : high / 2.0;
   const double above = k == 0 ? 1.0 : survival[k - 1];
   const double part = above > survival[k] ? (above - u) / (above - survival[k]) : 1.0;
   const auto depth = static_cast<std::size_t>((low + part * (high - low)) / 64.0);
-  if (depth >= stack_.size()) return fresh();
-  return stack_.reuse(depth);
+  if (depth >= stack_.size()) return;
+  run.fresh = false;
+  run.rank = stack_.size() - 1 - depth;
+}
+
+/// Lines above one that is taken away move down.
+void AddressSource::taken(std::size_t rank) {
+  for (Run& run : runs_)
+    if (rank < run.rank) --run.rank;
+}
+
+std::uint64_t AddressSource::fresh() {
+  if (stack_.push(next_)) taken(0);
+  return next_++;
+}
+
+std::uint64_t AddressSource::next(const Survival& survival, bool write, double run_lines,
+                                  double nearest_lines) {
+  Run& run = runs_[write ? 1 : 0];
+  if (run.left < 1.0) {
+    run.left += run_lines;
+    start(run, survival, nearest_lines);
+  }
+  run.left -= 1.0;
+  if (run.fresh) return fresh();
+  // The neighbor was used right after the line before it, so it has that one's rank now.
+  const std::size_t rank = std::min(run.rank, stack_.size() - 1);
+  const std::uint64_t line = stack_.reuse(rank);
+  taken(rank);
+  return line;
 }
 
 }  // namespace hwsim

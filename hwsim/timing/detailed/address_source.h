@@ -29,9 +29,10 @@ class LruStack {
  public:
   explicit LruStack(std::size_t lines_max);
   std::size_t size() const { return count_; }
-  void push(std::uint64_t line);
-  /// Takes the line at `depth` (0: the latest) to the top.
-  std::uint64_t reuse(std::size_t depth);
+  /// Returns whether the oldest line had to go.
+  bool push(std::uint64_t line);
+  /// Takes the line of a rank (0: the oldest) to the top.
+  std::uint64_t reuse(std::size_t rank);
 
  private:
   void append(std::uint64_t line);
@@ -51,23 +52,35 @@ using Survival = std::array<double, static_cast<std::size_t>(kCacheSizes)>;
 Survival survival(const std::array<std::uint64_t, kCacheSizes>& bytes, std::uint64_t requested,
                   double reached);
 
+/// The part of what is asked for that a cache of so many lines does not have; sizes between are interpolated.
+double missing(const Survival& survival, double lines);
+
 /// A stream of line numbers. `lines_max`: distances beyond are as good as new lines.
 class AddressSource {
  public:
   AddressSource(std::uint64_t first_line, std::size_t lines_max, std::uint64_t seed)
       : next_(first_line), stack_(lines_max), random_(seed) {}
-  std::uint64_t next(const Survival& survival);
+  /// `run_lines`: blocks of so many lines come and go together, so what one of them was asked for, its
+  /// neighbors are asked for next. Reads and writes are at blocks of their own. Only distances from
+  /// `nearest_lines` on are drawn.
+  std::uint64_t next(const Survival& survival, bool write, double run_lines, double nearest_lines);
   /// A line that was not used before; those that follow each other are neighbors.
-  std::uint64_t fresh() {
-    stack_.push(next_);
-    return next_++;
-  }
+  std::uint64_t fresh();
   std::size_t lines() const { return stack_.size(); }
 
  private:
+  struct Run {
+    double left = 0.0;
+    bool fresh = true;
+    std::size_t rank = 0;  ///< in the stack, of the line that comes next
+  };
+  void start(Run& run, const Survival& survival, double nearest_lines);
+  void taken(std::size_t rank);
+
   std::uint64_t next_;
   LruStack stack_;
   Random random_;
+  std::array<Run, 2> runs_;
 };
 
 }  // namespace hwsim

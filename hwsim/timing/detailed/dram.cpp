@@ -9,6 +9,7 @@ namespace {
 constexpr double kLineBytes = 64.0;
 constexpr std::uint64_t kInterleaveLines = 4;  // 256 bytes go to one channel
 constexpr std::size_t kWriteGroup = 32;        // as kDramWriteGroup of the closed form
+constexpr double kWriteGroupsWaiting = 2.0;    // of a channel: one fills while one is written
 
 }  // namespace
 
@@ -25,6 +26,7 @@ Dram::Dram(const GpuConfig& gpu) {
   // The config's latency is that of an idle DRAM with the row closed.
   latency_ns_ =
       std::max(0.0, (gpu.dram_latency_cycles - gpu.l2_latency_cycles) * clk_ns - row_miss_ns_ - line_ns_);
+  write_room_ns_ = kWriteGroupsWaiting * static_cast<double>(kWriteGroup) * line_ns_ + row_miss_ns_;
   lines_a_row_ = static_cast<std::uint64_t>(std::max(1.0, gpu.dram_row_bytes / kLineBytes));
   channels_.resize(static_cast<std::size_t>(channels));
   for (Channel& channel : channels_) channel.banks.resize(static_cast<std::size_t>(gpu.dram_banks));
@@ -68,7 +70,7 @@ double Dram::access(std::uint64_t line, bool write, double now_ns) {
   double done = now_ns;
   for (const std::uint64_t waiting : channel.writes) done = transfer(channel, waiting, now_ns);
   channel.writes.clear();
-  return done;
+  return std::max(now_ns, done - write_room_ns_);
 }
 
 double Dram::busy_ns() const {
@@ -76,6 +78,12 @@ double Dram::busy_ns() const {
   for (const Channel& channel : channels_)
     sum += channel.busy_ns + static_cast<double>(channel.writes.size()) * line_ns_;
   return sum / static_cast<double>(channels_.size());
+}
+
+double Dram::reordered_lines() const {
+  const Channel& channel = channels_.front();
+  return static_cast<double>(channels_.size() * channel.banks.size() * channel.banks.front().rows.size() *
+                             lines_a_row_);
 }
 
 double Dram::free_ns() const {

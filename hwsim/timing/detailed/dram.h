@@ -12,13 +12,16 @@ namespace hwsim {
 class Dram {
  public:
   explicit Dram(const GpuConfig& gpu);
-  /// When the line's data are there, or the write is taken over. Calls come in about the order of `now_ns`.
+  /// When the line's data are there, or the write is taken over: later than now where more writes wait than
+  /// the channel has room for.
   double access(std::uint64_t line, bool write, double now_ns);
   /// Busy time of the channels so far, as if spread evenly; waiting writes included.
   double busy_ns() const;
   double free_ns() const;  ///< when the last channel has done all that it was given
   double line_ns() const { return line_ns_; }
   double channel_count() const { return static_cast<double>(channels_.size()); }
+  /// Lines whose rows the banks' queues hold: within so many the order of requests opens no further rows.
+  double reordered_lines() const;
   std::uint64_t row_misses() const { return row_misses_; }
 
  private:
@@ -41,7 +44,7 @@ class Dram {
   double transfer(Channel& channel, std::uint64_t line, double now_ns);
   void turn(Channel& channel, bool writing, double now_ns);
 
-  double line_ns_, row_miss_ns_, row_cycle_ns_, turn_ns_, latency_ns_;
+  double line_ns_, row_miss_ns_, row_cycle_ns_, turn_ns_, latency_ns_, write_room_ns_;
   std::uint64_t lines_a_row_;
   std::uint64_t row_misses_ = 0;
   std::vector<Channel> channels_;

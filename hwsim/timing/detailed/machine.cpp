@@ -85,27 +85,32 @@ Machine::Machine(const PassWork& pass, const PacketPlan& plan, const GpuConfig& 
   }
 }
 
-std::vector<double> Machine::run(std::uint64_t first, std::uint64_t last) {
-  retired_ns_.clear();
-  for (double& free : front_free_) free = std::max(free, last_ns_);
-  now_ns_ = last_ns_;
-  std::uint64_t next = first;
-  for (;;) {
-    while (next < last && enter(next)) ++next;
-    if (events_.empty()) {
-      if (next < last) stall(next);
-      break;
+Machine::Progress Machine::enter_until(std::uint64_t last) {
+  while (next_ < last) {
+    if (enter(next_)) {
+      ++next_;
+      continue;
     }
-    const Event event = events_.top();
-    events_.pop();
-    now_ns_ = event.ns;
-    handle(event);
-    if (++events_since_progress_ > events_max_) stall(next);
+    if (events_.empty()) stall(next_);
+    handle_next();
   }
-  std::sort(retired_ns_.begin(), retired_ns_.end());
-  if (!retired_ns_.empty()) last_ns_ = retired_ns_.back();
-  return retired_ns_;
+  return progress(dispatched_ns_);
 }
+
+Machine::Progress Machine::drain() {
+  while (!events_.empty()) handle_next();
+  return progress(std::max(last_ns_, memory_.dram().free_ns()));
+}
+
+void Machine::handle_next() {
+  const Event event = events_.top();
+  events_.pop();
+  now_ns_ = event.ns;
+  handle(event);
+  if (++events_since_progress_ > events_max_) stall(next_);
+}
+
+Machine::Progress Machine::progress(double ns) const { return {ns, memory_.dram_bytes(), busy_ns()}; }
 
 bool Machine::enter(std::uint64_t packet) {
   const ChunkPackets& chunk = plan_.chunk_of(packet);
@@ -121,13 +126,13 @@ bool Machine::enter(std::uint64_t packet) {
   ++entered_;
   if (shades) {
     const double start = std::max(ready, now_ns_);
-    front_done_.back()[slot] = start;
+    front_done_.back()[slot] = dispatched_ns_ = start;
     dispatch(chunk, core, start);
     return true;
   }
   const Leaving out = finish(chunk, ready);
-  front_done_.back()[slot] = out.accepted_ns;
-  retired_ns_.push_back(out.done_ns);
+  front_done_.back()[slot] = dispatched_ns_ = out.accepted_ns;
+  last_ns_ = std::max(last_ns_, out.done_ns);
   events_since_progress_ = 0;
   return true;
 }
@@ -224,7 +229,7 @@ void Machine::fetch(std::uint32_t index, double now) {
   double ready = core.tex_ns;
   const double lookups = whole(w.l1_lines * part), loads = whole(w.storage_lines * part);
   for (double i = 0.0; i < lookups; i += 1.0)
-    if (!core.l1.access(core.reads.next(l1_survival_), false).hit)
+    if (!core.l1.access(core.reads.next(l1_survival_, false, 1.0, 0.0), false).hit)
       ready = std::max(ready, fetch_line(core, Stream::texture, core.tex_ns));
   for (double i = 0.0; i < loads; i += 1.0) ready = std::max(ready, fetch_line(core, Stream::storage, now));
   ++s.phase;
@@ -239,14 +244,15 @@ double Machine::fetch_line(Core& core, Stream stream, double now) {
     start = std::max(start, core.misses.front());
     core.misses.pop_front();
   }
-  const double arrives = memory_.access(MemoryClient::reads, stream, reads_[at(stream)], false, false, start);
+  const double arrives =
+      memory_.access(MemoryClient::reads, stream, reads_[at(stream)], 1.0, false, false, start);
   core.misses.push_back(arrives);
   return arrives;
 }
 
 void Machine::leave(std::uint32_t index, double now) {
   const Leaving out = finish(*subgroups_[index].chunk, now);
-  retired_ns_.push_back(out.done_ns);
+  last_ns_ = std::max(last_ns_, out.done_ns);
   events_since_progress_ = 0;
   if (out.accepted_ns > now) return push(out.accepted_ns, index, Step::release);
   release(index);
@@ -297,14 +303,15 @@ double Machine::move_lines(double bytes, Stream stream, bool write, bool bypass,
   if (bytes <= 0.0) return now;
   const Survival& of_l2 = (write ? writes_ : reads_)[at(stream)];
   const double lines = whole(bytes / kTextureLineBytes);
+  const double run_lines = (write ? plan_.run_lines.write : plan_.run_lines.read)[at(stream)];
   for (double i = 0.0; i < lines; i += 1.0) {
     while (!outstanding.empty() && outstanding.front() <= now) outstanding.pop_front();
     if (outstanding.size() >= unit_lines_max_) {
       now = std::max(now, outstanding.front());
       outstanding.pop_front();
     }
-    outstanding.push_back(
-        memory_.access(client_of(stream), stream, bypass ? kAlwaysNew : of_l2, write, bypass, now));
+    outstanding.push_back(memory_.access(client_of(stream), stream, bypass ? kAlwaysNew : of_l2, run_lines,
+                                         write, bypass, now));
   }
   return now;
 }
@@ -318,11 +325,6 @@ double Machine::whole(double mean) {
   return low + (random_.ratio() < mean - low ? 1.0 : 0.0);
 }
 
-double Machine::end_ns() const {
-  const Dram& dram = memory_.dram();
-  return std::max({last_ns_, dram.free_ns(), dram.busy_ns() + memory_.flush_ns()});
-}
-
 std::array<double, kUnitCount> Machine::busy_ns() const {
   std::array<double, kUnitCount> busy = busy_ns_;
   const auto cores = static_cast<double>(cores_.size());
@@ -330,8 +332,62 @@ std::array<double, kUnitCount> Machine::busy_ns() const {
       std::max(std::max({alu_busy_, sfu_busy_, memory_pipe_busy_}) / cores, atomic_busy_);
   busy[at(Unit::tex)] = tex_busy_ / cores;
   busy[at(Unit::l2)] = memory_.l2_busy_ns();
-  busy[at(Unit::dram)] = memory_.dram().busy_ns() + memory_.flush_ns();
+  busy[at(Unit::dram)] = memory_.dram().busy_ns();
   return busy;
+}
+
+namespace {
+
+/// What a client asks L2 for, how much of it is far.
+struct Asked {
+  double lines = 0.0, written = 0.0, far = 0.0;
+};
+
+}  // namespace
+
+// Rows, queues and what the cores hold stay as they are.
+void Machine::skip_to(std::uint64_t packet) {
+  std::array<Asked, kMemoryClients> asked{};
+  std::vector<MemorySystem::Passing> passing;
+  StreamBytesOf<double> lines;
+  double lookups = 0.0;
+  const double l1_missing = missing(l1_survival_, static_cast<double>(cores_.front().l1.lines()));
+  for (const ChunkPackets& chunk : plan_.chunks) {
+    const std::uint64_t from = std::max(next_, chunk.first), to = std::min(packet, chunk.first + chunk.count);
+    if (from >= to) continue;
+    const auto n = static_cast<double>(to - from);
+    for (std::size_t i = 0; i < kStreamCount; ++i) {
+      lines.read[i] += n * chunk.l2.read[i] / kTextureLineBytes;
+      lines.write[i] += n * chunk.l2.write[i] / kTextureLineBytes;
+    }
+    const double subgroups = n * chunk.subgroups / static_cast<double>(chunk.count);
+    lines.read[at(Stream::storage)] += subgroups * chunk.work.storage_lines;
+    lines.read[at(Stream::texture)] += subgroups * chunk.work.l1_lines * l1_missing;
+    lookups += subgroups * chunk.work.l1_lines / static_cast<double>(cores_.size());
+  }
+  const auto pass_by = [&](std::size_t i, bool write, double count) {
+    if (count <= 0.0) return;
+    const auto stream = static_cast<Stream>(i);
+    const Survival& survival = (write ? writes_ : reads_)[i];
+    const double far = count * missing(survival, memory_.near_lines());
+    Asked& a = asked[static_cast<std::size_t>(client_of(stream))];
+    a.lines += count;
+    a.written += write ? count : 0.0;
+    a.far += far;
+    passing.push_back({client_of(stream), &survival,
+                       (write ? plan_.run_lines.write : plan_.run_lines.read)[i], far, write, 0.0});
+  };
+  for (std::size_t i = 0; i < kStreamCount; ++i) {
+    pass_by(i, false, lines.read[i]);
+    pass_by(i, true, lines.write[i]);
+  }
+  for (MemorySystem::Passing& p : passing) {  // a line is asked for lines / far times while it is near
+    const Asked& a = asked[static_cast<std::size_t>(p.client)];
+    if (a.far > 0.0) p.written_ratio = 1.0 - std::pow(1.0 - a.written / a.lines, a.lines / a.far - 1.0);
+  }
+  memory_.pass_by(passing);
+  for (Core& core : cores_) core.pass_by(lookups * missing(l1_survival_, core.l1_has()));
+  next_ = packet;
 }
 
 void Machine::stall(std::uint64_t packet) const {

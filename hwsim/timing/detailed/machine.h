@@ -26,14 +26,18 @@ class Machine {
   Machine(const PassWork& pass, const PacketPlan& plan, const GpuConfig& gpu, const GpuRates<double>& rates,
           std::uint64_t events_without_progress_max, std::uint64_t seed);
 
-  /// Runs packets [first, last) and returns when each left the machine, sorted; times go on from the last
-  /// run.
-  std::vector<double> run(std::uint64_t first, std::uint64_t last);
-  void warm_up() { memory_.warm_up(); }
-  /// When everything is done, writes that wait in L2 included.
-  double end_ns() const;
-  std::array<double, kUnitCount> busy_ns() const;
-  const StreamBytesOf<double>& dram_bytes() const { return memory_.dram_bytes(); }
+  /// What was simulated so far: until when, and what was moved and done by then.
+  struct Progress {
+    double ns = 0.0;
+    StreamBytesOf<double> bytes;
+    std::array<double, kUnitCount> busy_ns{};
+  };
+  /// Simulates the next packets up to `last`; returns how it stands when the last of them is dispatched.
+  Progress enter_until(std::uint64_t last);
+  /// The next packet is `packet`: those between leave what the caches would remember of them, and no more.
+  void skip_to(std::uint64_t packet);
+  /// Everything that entered leaves.
+  Progress drain();
   const MemorySystem& memory() const { return memory_; }
 
  private:
@@ -57,12 +61,20 @@ class Machine {
     LineCache l1;
     AddressSource reads;
     std::deque<double> misses;  ///< when the lines that are on their way arrive
+    double l1_has() const { return static_cast<double>(std::min(l1.lines(), reads.lines())); }
+    void pass_by(double lines) {
+      for (double i = std::min(lines, static_cast<double>(l1.lines())); i >= 1.0; i -= 1.0)
+        l1.access(reads.fresh(), false);
+    }
   };
   struct Leaving {
     double accepted_ns, done_ns;
   };
   using Ring = std::vector<double>;
 
+  void handle_next();
+  Progress progress(double ns) const;
+  std::array<double, kUnitCount> busy_ns() const;
   bool enter(std::uint64_t packet);
   double front(const ChunkPackets& chunk);
   void dispatch(const ChunkPackets& chunk, std::size_t core, double ns);
@@ -81,7 +93,6 @@ class Machine {
                     std::deque<double>& outstanding);
   void push(double ns, std::uint32_t subgroup, Step step);
   double whole(double mean);  ///< a whole number, that on average
-  void check_progress(std::uint64_t packet);
   [[noreturn]] void stall(std::uint64_t packet) const;
 
   const PassWork& pass_;
@@ -98,8 +109,8 @@ class Machine {
   std::array<double, kFrontUnits.size()> front_free_{};
   std::array<Ring, kFrontUnits.size() + 1> front_done_{};  ///< of the last packets; the last: dispatched
   Ring leave_done_{};
+  std::uint64_t next_ = 0;  ///< packet
   std::uint64_t entered_ = 0, finished_ = 0;
-  double pending_ns_ = -1.0;  ///< when the packet that waits for a core came out of the front; negative: none
   std::deque<double> ia_lines_, depth_lines_, color_lines_;
   double crop_free_ = 0.0, resolve_free_ = 0.0, atomic_free_ = 0.0;
   std::vector<Core> cores_;
@@ -107,8 +118,7 @@ class Machine {
   std::vector<std::uint32_t> idle_;
   std::priority_queue<Event> events_;
   std::uint64_t event_number_ = 0;
-  std::vector<double> retired_ns_;
-  double now_ns_ = 0.0, last_ns_ = 0.0;
+  double now_ns_ = 0.0, dispatched_ns_ = 0.0, last_ns_ = 0.0;
   double alu_busy_ = 0.0, sfu_busy_ = 0.0, memory_pipe_busy_ = 0.0, tex_busy_ = 0.0, atomic_busy_ = 0.0;
   std::array<double, kUnitCount> busy_ns_{};
 };

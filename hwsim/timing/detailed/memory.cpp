@@ -57,7 +57,7 @@ LineCache::Outcome LineCache::access(std::uint64_t line, bool write) {
 }
 
 MemorySystem::MemorySystem(const GpuConfig& gpu, std::uint64_t seed)
-    : l2_(l2_lines(gpu), kL2Ways), dram_(gpu) {
+    : l2_(l2_lines(gpu), kL2Ways), dram_(gpu), random_(seed + 50) {
   const double clk_ns = 1000.0 / gpu.core_clock_mhz;
   l2_line_ns_ = kTextureLineBytes * clk_ns / gpu.l2_bytes_per_clk;
   // Latencies are those seen by a texture request; that of L1 is part of them.
@@ -67,9 +67,10 @@ MemorySystem::MemorySystem(const GpuConfig& gpu, std::uint64_t seed)
                                                   2 * l2_.lines(), seed + i);
 }
 
-double MemorySystem::access(MemoryClient client, Stream stream, const Survival& survival, bool write,
-                            bool bypass, double now_ns) {
-  const std::uint64_t line = sources_[static_cast<std::size_t>(client)]->next(survival);
+double MemorySystem::access(MemoryClient client, Stream stream, const Survival& survival, double run_lines,
+                            bool write, bool bypass, double now_ns) {
+  const std::uint64_t line =
+      sources_[static_cast<std::size_t>(client)]->next(survival, write, run_lines, 0.0);
   const auto move = [this](Stream of, bool out) {
     (out ? bytes_.write : bytes_.read)[at(of)] += kTextureLineBytes;
   };
@@ -78,24 +79,39 @@ double MemorySystem::access(MemoryClient client, Stream stream, const Survival& 
     return dram_.access(line, write, now_ns);
   }
   l2_busy_ns_ += l2_line_ns_;
-  const double at_l2 = l2_calendar_.reserve(now_ns, l2_line_ns_) + l2_latency_ns_;
+  double at_l2 = l2_calendar_.reserve(now_ns, l2_line_ns_) + l2_latency_ns_;
   const LineCache::Outcome outcome = l2_.access(line, write);
   if (outcome.writes_back) {
     move(owner(outcome.left_line), true);
-    dram_.access(outcome.left_line, true, at_l2);
+    at_l2 = dram_.access(outcome.left_line, true, at_l2);  // its place is free when the write is taken over
   }
   if (outcome.hit || write) return at_l2;  // what is written need not be read first: sectors are valid alone
   move(stream, false);
   return dram_.access(line, false, at_l2);
 }
 
-void MemorySystem::warm_up() {
-  if (warm_) return;
-  warm_ = true;
-  const std::size_t lines = l2_.lines() / 2;
-  for (const MemoryClient client : {MemoryClient::reads, MemoryClient::color, MemoryClient::depth})
-    for (std::size_t i = 0; i < lines / 3; ++i)
-      l2_.access(sources_[static_cast<std::size_t>(client)]->fresh(), false);
+// Order within what the banks' queues put in order again does not matter, nor do lines that L2 still has.
+double MemorySystem::near_lines() const {
+  return std::min(dram_.reordered_lines(), static_cast<double>(l2_.lines()) / 4.0);
+}
+
+// Of more than what fills L2 twice only the last remain to be seen. All in turn.
+void MemorySystem::pass_by(const std::vector<Passing>& accesses) {
+  double all = 0.0;
+  for (const Passing& p : accesses) all += p.far_accesses;
+  const double made = std::min(all, 2.0 * static_cast<double>(l2_.lines()));
+  if (made < 1.0) return;
+  std::vector<double> due(accesses.size(), 0.0);
+  for (double i = 1.0; i <= made; i += 1.0)
+    for (std::size_t k = 0; k < accesses.size(); ++k) {
+      const Passing& p = accesses[k];
+      due[k] += p.far_accesses / all;
+      if (due[k] < 1.0) continue;
+      due[k] -= 1.0;
+      AddressSource& source = *sources_[static_cast<std::size_t>(p.client)];
+      const std::uint64_t line = source.next(*p.survival, p.write, p.run_lines, near_lines());
+      l2_.access(line, p.write || random_.ratio() < p.written_ratio);
+    }
 }
 
 StreamBytesOf<double> MemorySystem::flush_bytes() const {

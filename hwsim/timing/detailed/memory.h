@@ -41,10 +41,24 @@ class MemorySystem {
   MemorySystem(const GpuConfig& gpu, std::uint64_t seed);
 
   /// A line of a stream through L2, or (`bypass`) straight to DRAM; returns when it is there.
-  double access(MemoryClient client, Stream stream, const Survival& survival, bool write, bool bypass,
-                double now_ns);
-  /// L2 full of older lines, as in the middle of a pass.
-  void warm_up();
+  double access(MemoryClient client, Stream stream, const Survival& survival, double run_lines, bool write,
+                bool bypass, double now_ns);
+  /// Accesses to L2 while nothing is simulated, by their distances: those that find their line within
+  /// `near_lines()` change nothing that matters and are left out.
+  struct Passing {
+    MemoryClient client;
+    const Survival* survival;
+    double run_lines, far_accesses;
+    bool write;
+    double written_ratio;  ///< of reads: the line is written soon after, by an access that was left out
+  };
+  double near_lines() const;
+  /// L2 and the clients' memory of their lines after these; nothing is moved, no time passes.
+  void pass_by(const std::vector<Passing>& accesses);
+  const AddressSource& source(MemoryClient client) const {
+    return *sources_[static_cast<std::size_t>(client)];
+  }
+  const LineCache& l2() const { return l2_; }
   /// Writes that are still in L2, as time of all channels.
   double flush_ns() const;
   const Dram& dram() const { return dram_; }
@@ -58,11 +72,11 @@ class MemorySystem {
   double l2_line_ns_, l2_latency_ns_, dram_latency_ns_;
   double l2_busy_ns_ = 0.0;
   Calendar l2_calendar_{64.0};
-  bool warm_ = false;
   LineCache l2_;
   Dram dram_;
   std::array<std::unique_ptr<AddressSource>, kMemoryClients> sources_;
   StreamBytesOf<double> bytes_;
+  Random random_;
 };
 
 }  // namespace hwsim

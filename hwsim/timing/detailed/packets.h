@@ -25,6 +25,7 @@ struct ChunkPackets {
   std::array<double, kUnitCount> service_ns{};  ///< of one packet, units that all packets go through
   SubgroupWork work;
   double expected_ns = 0.0, expected_bytes = 0.0;  ///< of a packet, by the closed forms: what samples weigh
+  double in_flight = 1.0;  ///< packets of this kind that the machine holds at once in a steady state
   StreamBytesOf<double> l2, direct;  ///< bytes of a packet that L2 is asked for, and that pass it by
 };
 
@@ -32,6 +33,7 @@ struct PacketPlan {
   std::vector<ChunkPackets> chunks;
   /// The part of what was asked for, compressed as DRAM sees it, that the caches before L2 let through.
   StreamBytesOf<double> reaches_l2;
+  StreamBytesOf<double> run_lines;  ///< neighboring lines that are asked for together
   double l1_asked = 1.0;
   std::uint64_t packets = 0;
   const ChunkPackets& chunk_of(std::uint64_t packet) const;
