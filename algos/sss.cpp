@@ -18,7 +18,7 @@ namespace {
 using namespace pipeline;
 
 // Shared by the variants (techniques 5.6).
-constexpr std::array<ParameterInfo, 13> kShared = {{
+constexpr std::array<ParameterInfo, 14> kShared = {{
     {"theta_c", 5, 0.01, 90, "triangles are critical whose normals differ by more, in degrees"},
     {"tri_px", 4, 0, 1e6, "a triangle is small below the square of this, in pixels"},
     {"hl_px", 1, 0, 1e6, "a highlight is small below this, in pixels"},
@@ -31,9 +31,12 @@ constexpr std::array<ParameterInfo, 13> kShared = {{
     {"k_max", 64, 1, 256, "and at most"},
     {"border_frac", 0.25, 0, 1, "share of them on the border"},
     {"pt_bias_units", 2, 0, 65536, "samples come forward by this many steps of 24-bit depth"},
-    {"pt_bias_slope", 1, 0, 16, "and by this times the change of depth for a pixel"},
+    {"pt_bias_slope", 0.1, 0, 16, "and by this times the change of depth for a pixel"},
     {"shading", 0, 0, 1, "highlights of the whole frame: the scene's model, or Phong's, as the paper has it",
      "scene|phong"},
+    {"rest", 0, 0, 1,
+     "under what samples leave of a pixel: the frame, as the paper has it, or its other triangles",
+     "frame|others"},
 }};
 
 template <std::size_t kCount>
@@ -81,7 +84,8 @@ struct SssFrame {
   FrameParts parts;
   ForwardTarget base;
   std::vector<CriticalDraw> critical;
-  ImageId resolved, depth;  ///< one sample a pixel
+  ImageId below;  ///< of the composite: the frame, resolved or, with marks, not
+  ImageId marks;  ///< samples of the frame whose triangle is sampled; none: all count as the rest
   SssUniforms uniforms;
 };
 
@@ -120,6 +124,27 @@ std::vector<CriticalDraw> list_critical(const FrameParts& parts, double theta_c_
   return critical;
 }
 
+/// Where the multisampled frame's samples lie.
+void set_samples(SssUniforms& u) {
+  const std::span<const SamplePosition> samples = standard_sample_positions(kSssBaseSamples);
+  for (int k = 0; k < kSssBaseSamples; ++k) {
+    const SamplePosition& p = samples[static_cast<std::size_t>(k)];
+    u.samples_x |= (p.x + 8) << (4 * k);
+    u.samples_y |= (p.y + 8) << (4 * k);
+  }
+  for (int cell = 0; cell < 16; ++cell) {
+    const auto distance2 = [&](const SamplePosition& p) {
+      const int dx = p.x + 8 - (4 * (cell % 4) + 2), dy = p.y + 8 - (4 * (cell / 4) + 2);
+      return dx * dx + dy * dy;
+    };
+    const auto nearest = std::min_element(samples.begin(), samples.end(), [&](const auto& a, const auto& b) {
+      return distance2(a) < distance2(b);
+    });
+    u.nearest_samples[static_cast<std::size_t>(cell / 8)] |= static_cast<int>(nearest - samples.begin())
+                                                             << (4 * (cell % 8));
+  }
+}
+
 SssUniforms make_uniforms(const FrameGraph& graph, const FrameParts& parts, const Parameters& p) {
   SssUniforms u;
   u.lighting = parts.lighting;
@@ -141,61 +166,26 @@ SssUniforms make_uniforms(const FrameGraph& graph, const FrameParts& parts, cons
   u.border_share = real(p, "border_frac");
   u.depth_bias = real(p, "pt_bias_units") * 0x1p-24f;
   u.depth_slope = real(p, "pt_bias_slope");
+  set_samples(u);
   return u;
 }
 
 /// The paper presumes opaque solids. What is blended over them writes no depth, so samples behind it would
 /// replace it: its depth is drawn apart, and they keep away.
 void add_overlay_depth(FrameGraph& graph, const SssFrame& f) {
-  ForwardTarget target;
-  target.width = graph.width();
-  target.height = graph.height();
-  const DrawBatch wires = wire_depth_batch(f.parts, target);
+  const DrawBatch wires = wire_depth_batch(f.parts, f.base);
   if (wires.draws.empty() && f.parts.draws.blend.empty()) return;
   Pass& pass = graph.add_pass("overlay_depth", PassKind::draw);
-  pass.depth = f.depth;
+  pass.samples = f.base.samples;
+  pass.depth = f.base.depth;
   if (!wires.draws.empty()) pass.batches.push_back(wires);
   if (f.parts.draws.blend.empty()) return;
   DrawBatch blended;
-  blended.state = opaque_state(target);
+  blended.state = opaque_state(f.base);
   blended.vertex = &mesh_position_program();
   blended.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{f.parts.clip_from_world});
   blended.draws = f.parts.draws.blend;
   pass.batches.push_back(std::move(blended));
-}
-
-/// The multisampled frame. With critical triangles, what the further passes start from; without, the output.
-SssFrame start_frame(FrameGraph& graph, const FrameRequest& request, const Parameters& p) {
-  constexpr int kSamples = 8;
-  SssFrame f;
-  f.parts = prepare_frame(graph, request);
-  if (value(p, "shading") != 0) f.parts.lighting.model = ShadingModel::phong;
-  f.base = make_forward_target(graph, "multisampled", graph.width(), graph.height(), kSamples);
-  f.base.centroid = true;
-  add_forward(graph, f.parts, "", f.base);
-  f.critical = list_critical(f.parts, value(p, "theta_c"));
-  if (f.critical.empty()) {
-    graph.add_resolve("resolve", f.base.color, add_output(graph));
-    return f;
-  }
-  f.resolved = graph.add_image({"resolved", Format::rgba8_srgb, graph.width(), graph.height(), 1});
-  graph.add_resolve("resolve", f.base.color, f.resolved);
-  f.depth = graph.add_image({"depth", graph.image(f.base.depth).format, graph.width(), graph.height(), 1});
-  graph.add_resolve("depth_resolve", f.base.depth, f.depth).resolve = ResolveMode::max;
-  add_overlay_depth(graph, f);
-  f.uniforms = make_uniforms(graph, f.parts, p);
-  return f;
-}
-
-void add_composite(FrameGraph& graph, const SssFrame& f, const FragmentProgram& program,
-                   std::vector<ImageId> sums, std::vector<BufferId> buffers) {
-  Pass& pass = graph.add_pass("composite", PassKind::full_screen);
-  pass.sampled = {f.resolved};
-  pass.sampled.insert(pass.sampled.end(), sums.begin(), sums.end());
-  pass.storage = std::move(buffers);
-  pass.fragment = &program;
-  pass.uniforms = std::make_shared<SssUniforms>(f.uniforms);
-  pass.color = {add_output(graph)};
 }
 
 /// One batch for each kind of vertex that the critical triangles have.
@@ -214,8 +204,69 @@ void add_batches(Pass& pass, const SssFrame& f, Fill&& fill) {
   }
 }
 
+/// The multisampled frame's samples on triangles that are sampled: drawn once more, where the depth is
+/// theirs.
+void add_marks(FrameGraph& graph, SssFrame& f) {
+  f.below = f.base.color;
+  f.marks = graph.add_image(
+      {"marks", Format::r8_unorm, graph.width(), graph.height(), graph.image(f.base.depth).samples});
+  graph.add_clear("marks_clear", {f.marks});
+  Pass& pass = graph.add_pass("marks", PassKind::draw);
+  pass.samples = f.base.samples;
+  pass.color = {f.marks};
+  pass.depth = f.base.depth;
+  pass.depth_read_only = true;
+  add_batches(pass, f, [&](DrawBatch& batch, SssVertex vertex) {
+    batch.geometry = &sss_marks_program(vertex);
+    batch.geometry_uniforms = std::make_shared<SssUniforms>(f.uniforms);
+    batch.fragment = &sss_mark_program();
+    batch.fragment_uniforms = batch.geometry_uniforms;
+    batch.state.depth = {true, false, Compare::equal};
+  });
+}
+
+/// The multisampled frame. With critical triangles, what the further passes start from; without, the output.
+SssFrame start_frame(FrameGraph& graph, const FrameRequest& request, const Parameters& p) {
+  SssFrame f;
+  f.parts = prepare_frame(graph, request);
+  if (value(p, "shading") != 0) f.parts.lighting.model = ShadingModel::phong;
+  f.base = make_forward_target(graph, "multisampled", graph.width(), graph.height(), kSssBaseSamples);
+  f.base.centroid = true;
+  add_forward(graph, f.parts, "", f.base);
+  f.critical = list_critical(f.parts, value(p, "theta_c"));
+  if (f.critical.empty()) {
+    graph.add_resolve("resolve", f.base.color, add_output(graph));
+    return f;
+  }
+  add_overlay_depth(graph, f);
+  f.uniforms = make_uniforms(graph, f.parts, p);
+  if (value(p, "rest") != 0) {
+    add_marks(graph, f);
+    return f;
+  }
+  f.below = graph.add_image({"resolved", Format::rgba8_srgb, graph.width(), graph.height(), 1});
+  graph.add_resolve("resolve", f.base.color, f.below);
+  return f;
+}
+
+void add_composite(FrameGraph& graph, const SssFrame& f, const FragmentProgram& program,
+                   std::vector<ImageId> sums, std::vector<BufferId> buffers) {
+  Pass& pass = graph.add_pass("composite", PassKind::full_screen);
+  SssUniforms uniforms = f.uniforms;
+  pass.sampled = {f.below};
+  pass.sampled.insert(pass.sampled.end(), sums.begin(), sums.end());
+  if (f.marks) {
+    uniforms.mark_slot = static_cast<int>(pass.sampled.size());
+    pass.sampled.push_back(f.marks);
+  }
+  pass.storage = std::move(buffers);
+  pass.fragment = &program;
+  pass.uniforms = std::make_shared<SssUniforms>(std::move(uniforms));
+  pass.color = {add_output(graph)};
+}
+
 std::vector<ImageId> slots(const SssFrame& f) {
-  std::vector<ImageId> images = {f.depth};
+  std::vector<ImageId> images = {f.base.depth};
   if (f.parts.shadow_map) images.push_back(f.parts.shadow_map);
   return images;
 }
@@ -228,8 +279,6 @@ FrameGraph build_points(const FrameRequest& request, const Parameters& p) {
   graph.add_clear("sum_clear", {sum});
   Pass& pass = graph.add_pass("sample", PassKind::draw);
   pass.color = {sum};
-  pass.depth = f.depth;
-  pass.depth_read_only = true;
   pass.sampled = slots(f);
   const bool tessellated = takes_feature(value(p, "points"), request.features.tessellator_points);
   add_batches(pass, f, [&](DrawBatch& batch, SssVertex vertex) {
@@ -244,7 +293,6 @@ FrameGraph build_points(const FrameRequest& request, const Parameters& p) {
     batch.fragment = &sss_point_shading_program(vertex);
     batch.geometry_uniforms = uniforms;
     batch.fragment_uniforms = uniforms;
-    batch.state.depth = {true, false, Compare::less_equal};
     batch.state.blend = {{true, BlendFactor::one, BlendFactor::one, BlendFactor::one, BlendFactor::one, 0xf}};
   });
   add_composite(graph, f, sss_composite_program(), {sum}, {});

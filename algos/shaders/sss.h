@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <type_traits>
 #include <vector>
 
 #include "pipeline/graph/frame_graph.h"
@@ -15,6 +16,28 @@ enum class SssMode { both, either };  ///< small triangle and small highlight, o
 
 /// What of a vertex the samples need: by material, so that plain ones move fewer bytes.
 enum class SssVertex { plain, textured, full };
+
+/// body(std::integral_constant) of `vertex`: what is compiled for each kind of vertex.
+template <class Body>
+decltype(auto) with_vertex(SssVertex vertex, Body&& body) {
+  switch (vertex) {
+    case SssVertex::plain:
+      return body(std::integral_constant<SssVertex, SssVertex::plain>());
+    case SssVertex::textured:
+      return body(std::integral_constant<SssVertex, SssVertex::textured>());
+    case SssVertex::full:
+      break;
+  }
+  return body(std::integral_constant<SssVertex, SssVertex::full>());
+}
+/// What `make`, as above, gives for each of them, in their order.
+template <class Make>
+auto for_each_vertex(Make&& make) {
+  using Made = decltype(make(std::integral_constant<SssVertex, SssVertex::plain>()));
+  return std::array<Made, 3>{make(std::integral_constant<SssVertex, SssVertex::plain>()),
+                             make(std::integral_constant<SssVertex, SssVertex::textured>()),
+                             make(std::integral_constant<SssVertex, SssVertex::full>())};
+}
 
 /// An instance's triangles for the compute variant.
 struct SssDraw {
@@ -40,6 +63,10 @@ struct SssUniforms {
   // How many samples, and where (5.2)
   float samples_per_px = 16.0f, samples_min = 4.0f, samples_max = 64.0f, border_share = 0.25f;
   float depth_bias = 0.0f, depth_slope = 1.0f;
+  // The depth image's eight samples, four bits each from the lowest: the one nearest to each of 4x4 cells of
+  // the pixel, row by row, and where they lie, in 1/16 px from the pixel's corner.
+  std::array<std::int32_t, 2> nearest_samples{};
+  std::int32_t samples_x = 0, samples_y = 0;
   float radiance_max = 1.0f;  ///< samples are clamped to it
 
   float fixed_point_scale = 1048576.0f;  // compute points (5.3)
@@ -49,24 +76,27 @@ struct SssUniforms {
   int grid = 4;  // lists (5.4); 0: by the highlight's width
   int capacity_nodes = 0, node_words = 4, list_nodes_max = 32;
   bool conservative_raster = false;
+
+  int mark_slot = -1;  ///< of composites: image of the samples whose triangle was sampled; -1: none
 };
+
+/// Of the frame below: shaders go through them one by one.
+inline constexpr int kSssBaseSamples = 8;
 
 /// Image slots of the passes that sample.
 inline constexpr int kSssDepthSlot = 0, kSssShadowSlot = 1;
-/// Of composites: the resolved frame, then what was accumulated.
+/// Of composites: the frame, resolved or, with marks, multisampled; then what was accumulated.
 inline constexpr int kSssFrameSlot = 0, kSssSumSlot = 1;
 
 // Points from a geometry shader
 const pipeline::GeometryProgram& sss_points_program(SssVertex vertex, int points_max);
 const pipeline::FragmentProgram& sss_point_shading_program(SssVertex vertex);
-const pipeline::FragmentProgram& sss_composite_program();
 
 // Points from a compute shader. Buffers: triangles, vertices, groups, sums.
 inline constexpr int kSssTriangleBuffer = 0, kSssVertexBuffer = 1, kSssGroupBuffer = 2, kSssSumBuffer = 3;
 inline constexpr int kSssGroupWords = 4;  ///< first triangle, triangles, draw, first triangle in the draw
 // Sums by integer atomics in fixed point, or by atomics of floats (GpuFeatures::float_atomics).
 const pipeline::ComputeProgram& sss_compute_program(bool floats);
-const pipeline::FragmentProgram& sss_sum_composite_program(bool floats);
 
 /// Fills buffer 0 with a word, and buffer 2, if `counter`, with one zero.
 struct SssClearUniforms {
@@ -82,5 +112,11 @@ const pipeline::ComputeProgram& sss_clear_program();
 const pipeline::GeometryProgram& sss_boxes_program(SssVertex vertex);
 const pipeline::FragmentProgram& sss_list_program(SssVertex vertex);
 const pipeline::FragmentProgram& sss_list_resolve_program();
+
+// The frame under what was sampled
+const pipeline::GeometryProgram& sss_marks_program(SssVertex vertex);
+const pipeline::FragmentProgram& sss_mark_program();
+const pipeline::FragmentProgram& sss_composite_program();
+const pipeline::FragmentProgram& sss_sum_composite_program(bool floats);
 
 }  // namespace hwsim::algos

@@ -96,22 +96,17 @@ class PointThread {
     point.site.dv_dy = dv.y;
   }
 
-  /// The pixel whose center a point of 1 px covers, after snapping as the rasterizer does.
-  static I point_pixel(F x) {
-    const F snapped = floor(x * F(256.0f) + F(0.5f)) * F(1.0f / 256.0f);
-    return to_int(ceiling(snapped) - F(1.0f));
-  }
-
   void add_point(const SssTriangle<F>& t, const SssCorner<F> (&c)[3], F weight, const Vec3<F>& b, M left,
                  SurfacePoint<S>& point) {
     const F x = b.x * c[0].x + b.y * c[1].x + b.z * c[2].x, y = b.x * c[0].y + b.y * c[1].y + b.z * c[2].y;
     const F z = b.x * c[0].z + b.y * c[1].z + b.z * c[2].z;
-    const I px = point_pixel(x), py = point_pixel(y);
+    const I px = point_pixel<I>(x), py = point_pixel<I>(y);
     const M outside = (x < F(0.0f)) | (y < F(0.0f)) | (z < F(0.0f)) | (z > F(1.0f));
     const M inside =
         (!outside) & (I(-1) < px) & (I(-1) < py) & (px < I(u_.width_px)) & (py < I(u_.height_px));
-    const F scene = s_.load_image(kSssDepthSlot, px, py, I(0)).x;
-    const M seen = left & inside & !((z - t.depth_bias) > scene);
+    const DepthTest<F, I> test = depth_test<F, I>(u_, t, x - to_float(px), y - to_float(py), z);
+    const F scene = s_.load_image(kSssDepthSlot, px, py, test.sample).x;
+    const M seen = left & inside & !(test.depth > scene);
     s_.branch(kShadeBlock, seen, [&]() HWY_ATTR {
       const Vec3<F> w = perspective_weights(c, b);
       for (std::size_t k = 0; k < values_[0].size(); ++k) {

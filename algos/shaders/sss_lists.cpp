@@ -7,6 +7,7 @@
 #define HWY_TARGET_INCLUDE "algos/shaders/sss_lists.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include "algos/shaders/sss_composite-inl.h"
 #include "algos/shaders/sss_geometry-inl.h"
 #include "algos/shaders/sss_pixel-inl.h"
 #include "pipeline/shade/count_fragment-inl.h"
@@ -17,7 +18,7 @@ namespace hwsim::algos::HWY_NAMESPACE {
 
 /// A box's flat varyings: of each corner x and y in 1/256 px, z, 1/w and attributes; then of the triangle.
 constexpr int corner_scalars(SssVertex vertex) { return 4 + attribute_count(vertex); }
-enum BoxScalar : int { kArea2 = 0, kGrid = 1, kBias = 2, kBoxScalars = 3 };
+enum BoxScalar : int { kArea2 = 0, kGrid = 1, kBias = 2, kSlopeX = 3, kSlopeY = 4, kBoxScalars = 5 };
 constexpr int box_scalars(SssVertex vertex) { return 3 * corner_scalars(vertex) + kBoxScalars; }
 
 /// The screen bounding box of a chosen triangle, half a pixel larger on each side; or, where the rasterizer
@@ -35,6 +36,8 @@ struct BoxShader : SssGeometryShader<kVertex, pipeline::GeometryOutput::triangle
           of_triangle[kArea2] = t.area2;
           of_triangle[kGrid] = u.grid > 0 ? F(static_cast<float>(u.grid)) : fitting_grid(t.highlight_px);
           of_triangle[kBias] = t.depth_bias;
+          of_triangle[kSlopeX] = t.depth_slope.x;
+          of_triangle[kSlopeY] = t.depth_slope.y;
           emit_box(s, u, c, chosen, std::span<const F>(out));
         });
   }
@@ -89,24 +92,20 @@ struct ListShader {
     const PixelTriangle<F> t = read_triangle(s, kTriangle);
     const F grid = s.flat_attr(kTriangle + kGrid);
     const F step = F(256.0f) / grid, places = grid * grid;
-    F covered(0.0f), sum_x(0.0f), sum_y(0.0f);
+    F covered(0.0f);
     s.loop_each(kSampleBlock, to_int(places), s.valid(), [&](int i, typename S::M left) HWY_ATTR {
       const Vec2<F> p = place(i, grid, step);
-      const F one = select(left & t.covers(p.x, p.y), F(1.0f), F(0.0f));
-      covered = covered + one;
-      sum_x = sum_x + one * p.x;
-      sum_y = sum_y + one * p.y;
+      covered = covered + select(left & t.covers(p.x, p.y), F(1.0f), F(0.0f));
     });
-    const F share = F(1.0f) / max(covered, F(1.0f));
-    const Vec3<F> mean = t.barycentric(sum_x * share, sum_y * share);
-    const F z = mean.x * t.z[0] + mean.y * t.z[1] + mean.z * t.z[2];
-    const F scene = s.load_image(kSssDepthSlot, s.pixel_x(), s.pixel_y(), I(0)).x;
-    const auto seen = s.active() & (covered > F(0.0f)) & !((z - s.flat_attr(kTriangle + kBias)) > scene);
-    s.discard(!seen);
-    s.branch(kCriticalBlock, seen, [&]() HWY_ATTR {
-      const Vec3<F> color = mean_light(s, u, t, grid, step, seen) * share;
-      const F part = covered * (F(64.0f) / places);
-      store_node(s, u, pack_color<S>(u, color, part), z, seen);
+    const auto reached = s.active() & (covered > F(0.0f));
+    s.discard(!reached);
+    s.branch(kCriticalBlock, reached, [&]() HWY_ATTR {
+      const I in_front = samples_behind(s, u, t, s.flat_attr(kTriangle + kBias));
+      const SeenPart<F> part = light_seen(s, u, t, grid, step, in_front, reached);
+      const auto seen = reached & (part.places > F(0.0f));
+      const F share = F(1.0f) / max(part.places, F(1.0f));
+      const F z = t.depth(part.sum_x * share, part.sum_y * share);
+      store_node(s, u, pack_color<S>(u, part.sum * share, part.places * (F(64.0f) / places)), z, seen);
     });
   }
 
@@ -124,6 +123,8 @@ struct ListShader {
       t.inv_w[v] = s.flat_attr(at + 3);
     }
     t.area2 = s.flat_attr(triangle_at + kArea2);
+    t.slope_x = s.flat_attr(triangle_at + kSlopeX) * F(1.0f / 256.0f);
+    t.slope_y = s.flat_attr(triangle_at + kSlopeY) * F(1.0f / 256.0f);
     return t;
   }
 
@@ -135,28 +136,55 @@ struct ListShader {
     return {(index - row * grid + F(0.5f)) * step, (row + F(0.5f)) * step};
   }
 
-  /// Sum of the light of the covered places.
+  /// A bit for each of the frame's samples that the triangle's plane is not behind of.
   template <class S, class F>
-  static Vec3<F> mean_light(S& s, const SssUniforms& u, const PixelTriangle<F>& t, F grid, F step,
-                            typename S::M seen) {
+  static typename S::I samples_behind(S& s, const SssUniforms& u, const PixelTriangle<F>& t, F bias) {
+    using I = typename S::I;
+    I bits(0);
+    for (int k = 0; k < kSssBaseSamples; ++k) {
+      const auto at = [&](std::int32_t digits)
+                          HWY_ATTR { return F(16.0f * static_cast<float>(digits >> (4 * k) & 15)); };
+      const F z = t.depth(at(u.samples_x), at(u.samples_y)) - bias;
+      const F scene = s.load_image(kSssDepthSlot, s.pixel_x(), s.pixel_y(), I(k)).x;
+      bits = bits | select(z > scene, I(0), I(1 << k));
+    }
+    return bits;
+  }
+
+  /// The covered places that are seen: how many, the sums of where they are and of their light.
+  template <class F>
+  struct SeenPart {
+    F places, sum_x, sum_y;
+    Vec3<F> sum;
+  };
+
+  template <class S, class F, class I>
+  static SeenPart<F> light_seen(S& s, const SssUniforms& u, const PixelTriangle<F>& t, F grid, F step,
+                                I in_front, typename S::M reached) {
     std::array<F, static_cast<std::size_t>(3 * attribute_count(kVertex))> values;
     for (int v = 0; v < 3; ++v)
       for (int k = 0; k < attribute_count(kVertex); ++k)
         values[static_cast<std::size_t>(v * attribute_count(kVertex) + k)] =
             s.flat_attr(v * corner_scalars(kVertex) + 4 + k);
     const F zero(0.0f);
-    Vec3<F> sum = {zero, zero, zero};
-    s.loop_each(kShadeBlock, to_int(grid * grid), seen, [&](int i, typename S::M left) HWY_ATTR {
+    SeenPart<F> part = {zero, zero, zero, {zero, zero, zero}};
+    s.loop_each(kShadeBlock, to_int(grid * grid), reached, [&](int i, typename S::M left) HWY_ATTR {
       const Vec2<F> p = place(i, grid, step);
-      const auto inside = left & t.covers(p.x, p.y);
+      const I near = near_sample<F, I>(u, p.x * F(1.0f / 256.0f), p.y * F(1.0f / 256.0f)).number;
+      const auto open = I(0) < (lanes::shift_right_by(in_front, near) & I(1));
+      const auto inside = left & open & t.covers(p.x, p.y);
       s.branch(kStoreBlock, inside, [&]() HWY_ATTR {
         SurfacePoint<S> point(s);
         set_point(t, values, p, point);
         const Vec3<F> c = light_point(s, u, point, kVertex, inside);
-        sum = select(inside, sum + c, sum);
+        part.sum = select(inside, part.sum + c, part.sum);
+        const F one = select(inside, F(1.0f), F(0.0f));
+        part.places = part.places + one;
+        part.sum_x = part.sum_x + one * p.x;
+        part.sum_y = part.sum_y + one * p.y;
       });
     });
-    return sum;
+    return part;
   }
 
   template <class S, class F, std::size_t kValues>
@@ -217,7 +245,6 @@ struct ListResolveShader {
   static void run(S& s, const SssUniforms& u) {
     using F = typename S::F;
     using I = typename S::I;
-    const Vec4<F> frame = s.load_image(kSssFrameSlot, s.pixel_x(), s.pixel_y(), I(0));
     Nodes<S> nodes;
     const int read = read_list(s, u, nodes);
     const F zero(0.0f);
@@ -233,8 +260,7 @@ struct ListResolveShader {
         share = share + g;
       });
     }
-    const F rest = F(1.0f) - share;
-    s.output(0, {sum.x + rest * frame.x, sum.y + rest * frame.y, sum.z + rest * frame.z, frame.w});
+    blend_over_frame(s, u, {sum.x, sum.y, sum.z, share});
   }
 
  private:
@@ -316,20 +342,12 @@ struct ListResolveShader {
   }
 };
 
-template <SssVertex kVertex>
-void run_boxes(pipeline::GeometryBatch& b, const void* u) {
-  lanes::run_geometry_shader<BoxShader<kVertex>>(b, u);
+void run_boxes(SssVertex vertex, pipeline::GeometryBatch& b, const void* u) {
+  with_vertex(vertex, [&](auto v) HWY_ATTR { lanes::run_geometry_shader<BoxShader<v()>>(b, u); });
 }
-template <SssVertex kVertex>
-void run_lists(pipeline::FragmentBatch& b, const void* u) {
-  lanes::run_fragment_shader<ListShader<kVertex>>(b, u);
+void run_lists(SssVertex vertex, pipeline::FragmentBatch& b, const void* u) {
+  with_vertex(vertex, [&](auto v) HWY_ATTR { lanes::run_fragment_shader<ListShader<v()>>(b, u); });
 }
-void run_boxes_plain(pipeline::GeometryBatch& b, const void* u) { run_boxes<SssVertex::plain>(b, u); }
-void run_boxes_textured(pipeline::GeometryBatch& b, const void* u) { run_boxes<SssVertex::textured>(b, u); }
-void run_boxes_full(pipeline::GeometryBatch& b, const void* u) { run_boxes<SssVertex::full>(b, u); }
-void run_lists_plain(pipeline::FragmentBatch& b, const void* u) { run_lists<SssVertex::plain>(b, u); }
-void run_lists_textured(pipeline::FragmentBatch& b, const void* u) { run_lists<SssVertex::textured>(b, u); }
-void run_lists_full(pipeline::FragmentBatch& b, const void* u) { run_lists<SssVertex::full>(b, u); }
 void run_list_resolve(pipeline::FragmentBatch& b, const void* u) {
   lanes::run_fragment_shader<ListResolveShader>(b, u);
 }
@@ -339,12 +357,8 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace hwsim::algos {
-HWY_EXPORT(run_boxes_plain);
-HWY_EXPORT(run_boxes_textured);
-HWY_EXPORT(run_boxes_full);
-HWY_EXPORT(run_lists_plain);
-HWY_EXPORT(run_lists_textured);
-HWY_EXPORT(run_lists_full);
+HWY_EXPORT(run_boxes);
+HWY_EXPORT(run_lists);
 HWY_EXPORT(run_list_resolve);
 
 namespace {
@@ -355,44 +369,33 @@ using pipeline::GeometryProgram;
 namespace shaders = HWY_NAMESPACE;
 
 template <SssVertex kVertex>
-GeometryProgram describe_boxes(void (*run)(GeometryBatch&, const void*)) {
-  return pipeline::HWY_NAMESPACE::describe_geometry_shader<shaders::BoxShader<kVertex>>("sss_boxes", run);
+void call_boxes(GeometryBatch& b, const void* u) {
+  HWY_DYNAMIC_DISPATCH(run_boxes)(kVertex, b, u);
 }
 template <SssVertex kVertex>
-FragmentProgram describe_list(void (*run)(FragmentBatch&, const void*)) {
-  FragmentProgram program =
-      pipeline::HWY_NAMESPACE::describe_fragment_shader<shaders::ListShader<kVertex>>("sss_list", run);
+void call_lists(FragmentBatch& b, const void* u) {
+  HWY_DYNAMIC_DISPATCH(run_lists)(kVertex, b, u);
+}
+
+template <SssVertex kVertex>
+FragmentProgram describe_list() {
+  FragmentProgram program = pipeline::HWY_NAMESPACE::describe_fragment_shader<shaders::ListShader<kVertex>>(
+      "sss_list", call_lists<kVertex>);
   program.varying_scalars = shaders::box_scalars(kVertex);
-  program.can_discard = true;
   return program;
 }
 }  // namespace
 
 const GeometryProgram& sss_boxes_program(SssVertex vertex) {
-  static const GeometryProgram programs[] = {
-      describe_boxes<SssVertex::plain>([](GeometryBatch& b, const void* u) {
-        HWY_DYNAMIC_DISPATCH(run_boxes_plain)(b, u);
-      }),
-      describe_boxes<SssVertex::textured>([](GeometryBatch& b, const void* u) {
-        HWY_DYNAMIC_DISPATCH(run_boxes_textured)(b, u);
-      }),
-      describe_boxes<SssVertex::full>([](GeometryBatch& b, const void* u) {
-        HWY_DYNAMIC_DISPATCH(run_boxes_full)(b, u);
-      })};
+  static const auto programs = for_each_vertex([](auto v) {
+    return pipeline::HWY_NAMESPACE::describe_geometry_shader<shaders::BoxShader<v()>>("sss_boxes",
+                                                                                      call_boxes<v()>);
+  });
   return programs[static_cast<std::size_t>(vertex)];
 }
 
 const FragmentProgram& sss_list_program(SssVertex vertex) {
-  static const FragmentProgram programs[] = {
-      describe_list<SssVertex::plain>([](FragmentBatch& b, const void* u) {
-        HWY_DYNAMIC_DISPATCH(run_lists_plain)(b, u);
-      }),
-      describe_list<SssVertex::textured>([](FragmentBatch& b, const void* u) {
-        HWY_DYNAMIC_DISPATCH(run_lists_textured)(b, u);
-      }),
-      describe_list<SssVertex::full>([](FragmentBatch& b, const void* u) {
-        HWY_DYNAMIC_DISPATCH(run_lists_full)(b, u);
-      })};
+  static const auto programs = for_each_vertex([](auto v) { return describe_list<v()>(); });
   return programs[static_cast<std::size_t>(vertex)];
 }
 

@@ -19,6 +19,9 @@ template <class F>
 struct PixelTriangle {
   F x[3], y[3], z[3], inv_w[3];
   F area2;
+  F slope_x, slope_y;  ///< change of depth for 1/256 px
+
+  F depth(F px, F py) const { return z[0] + slope_x * (px - x[0]) + slope_y * (py - y[0]); }
 
   /// The top-left rule, by the same operations for both triangles of an edge: a place is in exactly one.
   auto covers(F px, F py) const {

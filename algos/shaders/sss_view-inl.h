@@ -2,6 +2,7 @@
 // the lighting of a point on it. Per-target include guard, see shade/lanes-inl.h.
 #include <hwy/highway.h>
 #include "algos/shaders/sss.h"
+#include "pipeline/shade/bit_ops-inl.h"
 #include "pipeline/shade/surface-inl.h"
 #include "pipeline/shade/texture_sampler-inl.h"
 #if defined(HWSIM_ALGOS_SHADERS_SSS_VIEW_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -65,9 +66,10 @@ struct SssTriangle {
   F facing;  ///< -1: the back of a double-sided material
   F theta;   ///< largest angle between two normals
   F cos_theta;
-  F highlight_px;  ///< width of a highlight on it
-  F exponent;      ///< Phong's
-  F depth_bias;    ///< by which samples come forward
+  F highlight_px;       ///< width of a highlight on it
+  F exponent;           ///< Phong's
+  Vec2<F> depth_slope;  ///< change of depth for a pixel
+  F depth_bias;         ///< by which samples come forward
 };
 
 /// asin for [0, 0.71] by its series: relative error below 0.3 %; beyond it underrates. Sizes of highlights
@@ -124,6 +126,21 @@ F lobe_width(F exponent) {
   return F(2.0f) * sqrt(F(2.0f) * away) * (F(1.0f) + away * F(0.0833333f));
 }
 
+/// Radians for a pixel by which the normal turns, in the direction on the screen in which it turns most: the
+/// larger singular value of its derivatives. (Techniques 5.1 divides the longest edge by the angle between
+/// normals, which is this for triangles about as long as wide. On a bar's long ones the normal turns across
+/// them, and their length says nothing of how thin the highlight is.)
+template <class F>
+F fastest_turn(const SssCorner<F> (&c)[3], F area2) {
+  const Vec2<F> x = gradient(c, area2, c[0].normal.x, c[1].normal.x, c[2].normal.x);
+  const Vec2<F> y = gradient(c, area2, c[0].normal.y, c[1].normal.y, c[2].normal.y);
+  const Vec2<F> z = gradient(c, area2, c[0].normal.z, c[1].normal.z, c[2].normal.z);
+  const F across = x.x * x.x + y.x * y.x + z.x * z.x, down = x.y * x.y + y.y * y.y + z.y * z.y;
+  const F both = x.x * x.y + y.x * y.y + z.x * z.y;
+  const F half = (across - down) * F(0.5f);
+  return sqrt((across + down) * F(0.5f) + sqrt(half * half + both * both));
+}
+
 template <class S, class F>
 SssTriangle<F> measure_triangle(S& s, const SssUniforms& u, float winding, SssCorner<F> (&c)[3]) {
   for (SssCorner<F>& corner : c) place_corner(u, corner);
@@ -135,11 +152,10 @@ SssTriangle<F> measure_triangle(S& s, const SssUniforms& u, float winding, SssCo
   t.theta = F(2.0f) * small_asin(min(sqrt(chord2) * F(0.5f), F(1.0f)));
   t.cos_theta = F(1.0f) - chord2 * F(0.5f);
   t.exponent = F(material_exponent(s.material()) * u.exponent_scale);
-  const F longest = max(max(edge_px(c[0], c[1]), edge_px(c[1], c[2])), edge_px(c[2], c[0]));
   // A reflection turns twice as fast as the normal.
-  t.highlight_px = longest * (lobe_width(t.exponent) * F(0.5f)) / max(t.theta, F(1e-4f));
-  const Vec2<F> slope = gradient(c, t.area2, c[0].z, c[1].z, c[2].z);
-  t.depth_bias = F(u.depth_bias) + F(u.depth_slope) * max(abs(slope.x), abs(slope.y));
+  t.highlight_px = lobe_width(t.exponent) * F(0.5f) / max(fastest_turn(c, t.area2), F(1e-6f));
+  t.depth_slope = gradient(c, t.area2, c[0].z, c[1].z, c[2].z);
+  t.depth_bias = F(u.depth_bias) + F(u.depth_slope) * max(abs(t.depth_slope.x), abs(t.depth_slope.y));
   return t;
 }
 
@@ -244,6 +260,57 @@ Vec3<F> perspective_weights(const SssCorner<F> (&c)[3], const Vec3<F>& b) {
   return w * (F(1.0f) / (w.x + w.y + w.z));
 }
 
+template <class F>
+F ceiling(F x) {
+  return F(0.0f) - floor(F(0.0f) - x);
+}
+
+/// The pixel whose center a point of 1 px covers, after snapping as the rasterizer does.
+template <class I, class F>
+I point_pixel(F x) {
+  const F snapped = floor(x * F(256.0f) + F(0.5f)) * F(1.0f / 256.0f);
+  return to_int(ceiling(snapped) - F(1.0f));
+}
+
+/// One of the multisampled frame's samples in its pixel.
+template <class F, class I>
+struct DepthSample {
+  I number;
+  F x, y;  ///< px from the pixel's corner
+};
+
+/// The sample near to a place, px from its pixel's corner. (In cells of a quarter: 4 of 16 cells hold places
+/// that lie nearer to another one, by 0.1 px at most.)
+template <class F, class I>
+DepthSample<F, I> near_sample(const SssUniforms& u, F x, F y) {
+  const auto cell = [](F v) HWY_ATTR { return max(min(to_int(v * F(4.0f)), I(3)), I(0)); };
+  const I row = cell(y);
+  const I word = select(row < I(2), I(u.nearest_samples[0]), I(u.nearest_samples[1]));
+  const I place = shift_left<4>(row & I(1)) | shift_left<2>(cell(x));
+  DepthSample<F, I> s;
+  s.number = lanes::shift_right_by(word, place) & I(7);
+  const I digit = shift_left<2>(s.number);
+  s.x = to_float(lanes::shift_right_by(I(u.samples_x), digit) & I(15)) * F(1.0f / 16.0f);
+  s.y = to_float(lanes::shift_right_by(I(u.samples_y), digit) & I(15)) * F(1.0f / 16.0f);
+  return s;
+}
+
+/// What of a place is compared with the frame's depth.
+template <class F, class I>
+struct DepthTest {
+  I sample;
+  F depth;
+};
+
+/// At (x, y), px from the pixel's corner, with depth `z` there: the triangle's plane at the sample near to
+/// it.
+template <class F, class I>
+DepthTest<F, I> depth_test(const SssUniforms& u, const SssTriangle<F>& t, F x, F y, F z) {
+  const DepthSample<F, I> near = near_sample<F, I>(u, x, y);
+  const F there = z + t.depth_slope.x * (near.x - x) + t.depth_slope.y * (near.y - y);
+  return {near.number, there - t.depth_bias};
+}
+
 /// Stands for a fragment at attributes of its own: materials and lighting take it as their context.
 template <class S>
 class SurfacePoint {
@@ -322,10 +389,6 @@ struct SssPattern {
   F edge[3], perimeter;
 };
 
-template <class F>
-F ceiling(F x) {
-  return F(0.0f) - floor(F(0.0f) - x);
-}
 template <class F>
 F fraction(F x) {
   return x - floor(x);

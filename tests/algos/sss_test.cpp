@@ -191,21 +191,21 @@ TEST(Sss, WeightsOfATrianglesPointsAddUpToItsArea) {
   namespace lanes = pipeline::HWY_NAMESPACE;
   static FragmentProgram program = lanes::describe_fragment_shader<WeightShader>(
       "weight", [](FragmentBatch& b, const void* u) { lanes::run_fragment_shader<WeightShader>(b, u); });
-  program.varying_scalars = 7;
+  program.varying_scalars = 9;
   // 8 by 4.5 pixels, inside the view, w = 1, counterclockwise
   const auto scene = share(
       clip_space_scene({{0.0f, 0.0f, 0.5f}, {0.125f, 0.0f, 0.5f}, {0.0f, 0.0703125f, 0.5f}}, {0, 1, 2}));
-  for (const float rho : {1.0f, 4.0f, 16.0f}) {
+  for (const float rho : {1.0f, 3.0f, 16.0f}) {
     auto u = std::make_shared<algos::SssUniforms>();
     u->width_px = u->height_px = 128;
     u->mode = algos::SssMode::either;
     u->triangle_px = u->highlight_px = 1e6f;
     u->early_exit = false;
     u->samples_per_px = rho;
-    u->samples_max = 90.0f;
+    u->samples_max = 72.0f;
     SampleFrame frame(scene, 128, 128, 1);
     DrawBatch batch = frame.all_draws(mesh_surface_program(), &program);
-    batch.geometry = &algos::sss_points_program(algos::SssVertex::plain, 90);
+    batch.geometry = &algos::sss_points_program(algos::SssVertex::plain, 72);
     batch.geometry_uniforms = u;
     batch.fragment_uniforms = std::make_shared<int>(0);
     batch.state.blend = {{true, BlendFactor::one, BlendFactor::one, BlendFactor::one, BlendFactor::one, 0xf}};
@@ -215,8 +215,8 @@ TEST(Sss, WeightsOfATrianglesPointsAddUpToItsArea) {
     for (const glm::vec4& p : e.color.pixels) sum += p.x;
     points = static_cast<double>(counters(e).sss_point_samples);
     const double area = 0.5 * 8 * 4.5, wanted = std::ceil(rho * area);
-    EXPECT_EQ(points, std::min(wanted, 90.0)) << rho;
-    if (wanted <= 90.0) {
+    EXPECT_EQ(points, std::min(wanted, 72.0)) << rho;
+    if (wanted <= 72.0) {
       EXPECT_NEAR(sum, area, area * 1e-5) << rho;
     }
   }
@@ -272,6 +272,64 @@ TEST(Sss, NothingBehindTheSceneContributes) {
   }
 }
 
+/// A rod that gives off light and reflects none, before black: every sample has its color, so that an image's
+/// light is the area that it is shown with.
+Scene shining_scene() {
+  Scene scene = empty_scene();
+  scene.materials[0].base_color = {0, 0, 0, 1};
+  scene.materials[0].metallic = 0.0f;
+  scene.materials[0].emissive = glm::vec3(1.0f);
+  scene.lights[0].color = scene.ambient = scene.background = glm::vec3(0.0f);
+  return scene;
+}
+
+double light_of(const Image& image) {
+  double sum = 0.0;
+  for (const glm::vec4& p : image.pixels) sum += p.x;
+  return sum;
+}
+
+// The paper blends samples over the whole frame, which holds their triangle already: a half covered pixel
+// shows 3/4 of it. Over the frame's other triangles it keeps its area.
+TEST(Sss, ASilhouetteKeepsItsAreaOverTheOtherTriangles) {
+  Mesh mesh;
+  add_cylinder(mesh, 0.01f, 0.08f, 12, 60, 0.03f);
+  const auto scene = finish(shining_scene(), std::move(mesh));
+  const double truth = light_of(run(scene, "ssaa64x").color);
+  for (const std::string variant : kVariants) {
+    const std::string all = variant + ":mode=or,early_exit=off,k_max=64";
+    EXPECT_GT(light_of(run(scene, all).color), 1.05 * truth) << variant;
+    EXPECT_NEAR(light_of(run(scene, all + ",rest=others").color), truth, 0.02 * truth) << variant;
+  }
+}
+
+// The wall's edge lies in the middle of a row of pixels and the rod right behind it, a third of a pixel
+// thick: the pixels' farthest depth is that of what lies behind both.
+TEST(Sss, WhatTheEdgeOfAWallHidesStaysHidden) {
+  const float row = 2.0f * 6.0f * std::tan(0.25f) / static_cast<float>(kHeight);  // of a pixel, where z is 0
+  Mesh mesh;
+  add_cylinder(mesh, -0.75f * row, 0.16f * row, 12, 60);
+  const auto wall = static_cast<std::uint32_t>(mesh.positions.size());
+  const float nearer = (6.0f - 0.3f) / 6.0f, edge = -0.5f * row * nearer;
+  for (const glm::vec2 corner :
+       {glm::vec2(-9, -9), glm::vec2(9, -9), glm::vec2(9, edge), glm::vec2(-9, edge)}) {
+    mesh.positions.push_back({corner, 0.3f});
+    mesh.normals.push_back({0, 0, 1});
+  }
+  Scene scene = shining_scene();
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].emissive = glm::vec3(0.0f);
+  const auto rod = static_cast<std::uint32_t>(mesh.indices.size());
+  mesh.indices.insert(mesh.indices.end(), {wall, wall + 1, wall + 2, wall, wall + 2, wall + 3});
+  auto finished = std::make_shared<Scene>(*finish(std::move(scene), std::move(mesh)));
+  finished->meshes[0].parts = {{0, rod, 0}, {rod, 6, 1}};
+  for (const std::string variant : kVariants) {
+    const Emulation e = run(finished, variant + ":mode=or,early_exit=off");
+    EXPECT_GT(counters(e).sss_processed_primitives, 100u) << variant;
+    EXPECT_EQ(light_of(e.color), 0.0) << variant;
+  }
+}
+
 TEST(Sss, ListsDoNotShowTheOrderOfInsertion) {
   const auto scene = rods();
   Scene shuffled = *scene;
@@ -315,6 +373,33 @@ TEST(Sss, FullListsAreCountedAndBoxesAndConservativeRasterAgree) {
             0u);
 }
 
+/// Draws triangles whose criticality only their highlights decide.
+std::uint64_t chosen(const std::shared_ptr<const Scene>& scene, const std::string& parameters) {
+  return counters(run(scene, "sss_cs:mode=or,tri_px=0,early_exit=off," + parameters))
+      .sss_processed_primitives;
+}
+
+// Width of a highlight, pixels: half the lobe's width over the turn of the normal for a pixel. On a cylinder
+// whose triangles are one pixel long or thirty the normal turns across it, and equally fast.
+TEST(Sss, HighlightsAreAsThinOnLongTrianglesAsOnShortOnes) {
+  for (const int along : {90, 3}) {
+    Mesh mesh;
+    add_cylinder(mesh, 0.0f, 0.3f, 24, along);
+    const auto scene = finish(empty_scene(), std::move(mesh));
+    // 0.3 m are 6.27 px; facets of 15 degrees turn by 0.1604 rad/px where they face the eye. The exponent is
+    // 2 / 0.35^4 - 2 = 131.3, a quarter of it for half vectors, and the lobe's width 0.4119 rad.
+    const float turn = 1.0f / 6.27f, width = 0.4119f * 0.5f / turn;
+    const auto share = [&](float part) {
+      return static_cast<double>(chosen(scene, "hl_px=" + std::to_string(part * width))) /
+             static_cast<double>(chosen(scene, "hl_px=100"));
+    };
+    // The nearest point is 5 % nearer than the axis. Narrower toward the limbs, by the cosine.
+    EXPECT_EQ(share(1.1f), 1.0) << along;
+    EXPECT_NEAR(share(0.87f), 2.0 / 3.0, 0.1) << along;  // 60 of 90 degrees lie beyond cos(30)
+    EXPECT_NEAR(share(0.5f), 1.0 / 3.0, 0.1) << along;
+  }
+}
+
 TEST(Sss, EarlyExitLeavesTheHighlights) {
   const auto scene = rods();
   for (const std::string variant : kVariants) {
@@ -338,8 +423,7 @@ TEST(Sss, AllocatesWhatThePaperAndItsArithmeticSay) {
     GpuFeatures features;
     features.conservative_raster = true;
     const std::uint64_t all = compile(graph, features, FunctionalConfig{}).allocated_bytes;
-    return all -
-           kPixels * (8 * 8 + 4 + 4 + 4);  // 8 samples of color and depth; resolved color, depth; output
+    return all - kPixels * (8 * 8 + 4 + 4);  // 8 samples of color and depth; resolved color; output
   };
   EXPECT_EQ(extra("sss_gs"), 8 * kPixels);                                         // 7.03 MiB
   EXPECT_EQ(extra("sss_cs"), 16 * kPixels);                                        // 14.06 MiB
