@@ -115,8 +115,8 @@ class BinDepth {
     const auto index = static_cast<std::size_t>(block);
     const Compare compare = state.depth.test ? state.depth.compare : Compare::always;
     const bool accepted = coarse == CoarseResult::accepted && state.depth.test && c_.skip.accepted_tiles;
-    w_.accepted_tiles_skipped += accepted && !write ? 1 : 0;
     if (c_.depth->plane_count[index] == 0) {
+      w_.accepted_tiles_skipped += accepted && !write ? 1 : 0;
       if (accepted && !write) return;
       const TileDepth tile{c_.depth->block(block), &c_.depth->depth_min[index], &c_.depth->depth_max[index],
                            c_.depth_scale};
@@ -127,8 +127,22 @@ class BinDepth {
     }
     const PlaneTile tile{*c_.depth, block, x, y, c_.depth_scale};
     if (!accepted) test_planes(compare, tile, plane, !c_.skip.plane_tiles, masks);
-    w_.plane_tiles_skipped += c_.skip.plane_tiles ? 1 : 0;
+    w_.accepted_tiles_skipped += accepted ? 1 : 0;
+    w_.plane_tiles_skipped += !accepted && c_.skip.plane_tiles ? 1 : 0;
     if (write && masks.count != 0) write_plane(tile, plane, masks);
+  }
+
+  /// Depth alone, sample by sample, whatever bounds say; nothing is written or counted.
+  void test_samples(const RasterTriangle& t, const DepthPlane& plane, int x, int y, SampleMasks& masks) {
+    const int block = c_.depth->block_index(x, y, layer_);
+    const auto index = static_cast<std::size_t>(block);
+    c_.depth->use_planes(block);
+    const Compare compare = w_.state->depth.compare;
+    if (c_.depth->plane_count[index] != 0)
+      return test_planes(compare, {*c_.depth, block, x, y, c_.depth_scale}, plane, true, masks);
+    const TileDepth tile{c_.depth->block(block), &c_.depth->depth_min[index], &c_.depth->depth_max[index],
+                         c_.depth_scale};
+    fine_test(compare, false, t, x, y, c_.positions, tile, masks);
   }
 
   /// Once for each chunk that uses the tile: what memory gave, and what went back to it since.

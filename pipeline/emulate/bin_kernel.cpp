@@ -114,8 +114,15 @@ class BinRunner : private BinShading {
         n.raster.visited_tiles += 1;
         DepthPlane plane;
         const CoarseResult coarse = test_coarse(t, x, y, plane, n);
-        if (coarse == CoarseResult::killed) continue;
-        if (!cover(t, coverage, x, y, masks, n)) continue;
+        if (coarse == CoarseResult::killed) {
+          if (c_.skip.hidden_tiles)
+            w_.hidden_tiles_skipped += 1;
+          else if (cover(t, coverage, x, y, masks))
+            test_hidden(t, plane, x, y, masks);
+          continue;
+        }
+        if (!cover(t, coverage, x, y, masks)) continue;
+        n.raster.covered_samples += masks.count;
         if (keeps_primitive_masks_) primitive_masks_ = masks;
         if (follows_map_ && !w_.late_z) hide_tile(t, x, y, masks.lanes);
         if (positions_ != samples_) masks.keep(~std::uint64_t{0}, 0, samples_, positions_);
@@ -128,8 +135,7 @@ class BinRunner : private BinShading {
     }
   }
 
-  bool cover(const RasterTriangle& t, TileCoverage& coverage, int x, int y, SampleMasks& masks,
-             PassCounters& n) {
+  bool cover(const RasterTriangle& t, TileCoverage& coverage, int x, int y, SampleMasks& masks) {
     if (coverage.covers_whole_tile()) {
       masks.start();
       for (int s = 0; s < positions_; ++s) masks.set(static_cast<std::size_t>(s), ~std::uint64_t{0});
@@ -145,8 +151,14 @@ class BinRunner : private BinShading {
       masks.keep(lanes_within(t.min_x - x, t.min_y - y, t.max_x - x, t.max_y - y), 0, positions_, positions_);
     if (x + kBlockPx > c_.width || y + kBlockPx > c_.height)
       masks.keep(lanes_inside(x, y), 0, positions_, positions_);
-    n.raster.covered_samples += masks.count;
     return masks.count != 0;
+  }
+
+  /// What the coarse test spares; samples that pass show that it was wrong.
+  void test_hidden(const RasterTriangle& t, const DepthPlane& plane, int x, int y, SampleMasks& masks) {
+    if (positions_ != samples_) masks.keep(~std::uint64_t{0}, 0, samples_, positions_);
+    test_samples(t, plane, x, y, masks);
+    w_.hidden_samples_passed += masks.count;
   }
 
   std::uint64_t lanes_inside(int x, int y) const {

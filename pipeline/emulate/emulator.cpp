@@ -4,6 +4,7 @@
 #include <chrono>
 #include <ctime>
 #include <memory>
+#include <stdexcept>
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/depth/depth_format.h"
@@ -61,13 +62,19 @@ class FrameRunner {
     if (options_.progress) options_.progress(1.0, "");
     result.color = read_output();
     result.shading_heat = read_heat();
-    result.skipped["frustum"] = skipped_draws_;
+    result.skipped["frustum"] = skipped_clusters_;
     result.skipped["single_color_pixels"] = skipped_pixels_;
+    result.skipped["cleared_tiles"] = skipped_tiles_;
+    std::uint64_t passed = 0;
     for (const BinWorker& worker : workers_) {
+      result.skipped["hidden_tiles"] += worker.hidden_tiles_skipped;
+      passed += worker.hidden_samples_passed;
       result.skipped["accepted_tiles"] += worker.accepted_tiles_skipped;
       result.skipped["plane_tiles"] += worker.plane_tiles_skipped;
     }
     result.skipped["passes"] = compiled_.culled.size();
+    if (passed != 0)
+      throw std::logic_error("the coarse depth test killed " + std::to_string(passed) + " samples that pass");
   }
 
  private:
@@ -98,10 +105,17 @@ class FrameRunner {
 
   void release(int position) {
     for (std::size_t i = 0; i < images_.size(); ++i)
-      if (compiled_.images[i].last_pass == position && static_cast<int>(i) != graph_.output().index)
+      if (compiled_.images[i].last_pass == position && static_cast<int>(i) != graph_.output().index) {
+        if (images_[i]) count_untouched(*images_[i]);
         images_[i].reset();
+      }
     for (std::size_t i = 0; i < buffers_.size(); ++i)
       if (compiled_.buffers[i].last_pass == position) std::vector<std::uint32_t>().swap(buffers_[i]);
+  }
+
+  /// Tiles that nothing has used since their clear.
+  void count_untouched(const GpuImage& image) {
+    skipped_tiles_ += static_cast<std::uint64_t>(std::count(image.cleared.begin(), image.cleared.end(), 1));
   }
 
   void run_pass(const Pass& pass, PassWork& work) {
@@ -291,7 +305,7 @@ class FrameRunner {
       for (std::uint64_t n = 0; last < c.draws.size() && n < most; ++last)
         n += c.draws[last].primitive_count();
       Segment segment = make_segment(c, first, last);
-      skipped_draws_ += run_vertices(c, segment, geometry, workers_);
+      skipped_clusters_ += run_vertices(c, segment, geometry, workers_);
       while (next_items(c, segment)) {
         run_primitives(c, segment, options_.jobs, workers_);
         parallel_for(static_cast<std::size_t>(c.bins_x * c.bins_y), bin_jobs(pass),
@@ -381,7 +395,9 @@ class FrameRunner {
     GpuImage* source = pass.source ? &image(pass.source) : nullptr;
     if (source != nullptr && pass.kind == PassKind::copy) source->use_all(options_.jobs);
     for (GpuImage* target : targets) {
+      if (pass.kind == PassKind::clear) count_untouched(*target);
       if (pass.kind == PassKind::clear) clear_image(*target, pass);
+      if (pass.kind == PassKind::clear && !options_.skip.cleared_tiles) target->start_all(options_.jobs);
       if (pass.kind == PassKind::copy) copy_image(*source, *target);
       if (pass.kind == PassKind::resolve)
         skipped_pixels_ += resolve_image(*source, *target, options_.skip.single_color_pixels, options_.jobs);
@@ -420,8 +436,9 @@ class FrameRunner {
   std::vector<BinWorker> workers_;
   int heat_blocks_x_;
   std::vector<std::uint32_t> heat_;
-  std::uint64_t skipped_draws_ = 0;
+  std::uint64_t skipped_clusters_ = 0;
   std::uint64_t skipped_pixels_ = 0;
+  std::uint64_t skipped_tiles_ = 0;
 };
 
 }  // namespace

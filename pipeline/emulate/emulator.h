@@ -18,6 +18,8 @@ namespace hwsim::pipeline {
 /// time.
 struct SkipSwitches {
   bool frustum = true;
+  bool cleared_tiles = true;
+  bool hidden_tiles = true;
   bool accepted_tiles = true;
   bool plane_tiles = true;
   bool single_color_pixels = true;
@@ -30,9 +32,12 @@ struct SkipInfo {
 };
 
 /// The switches by name; results count each one's uses under it.
-inline constexpr std::array<SkipInfo, 4> kSkips = {{
-    {"frustum", "instances outside the view volume are not transformed; their culling is still counted",
+inline constexpr std::array<SkipInfo, 6> kSkips = {{
+    {"frustum", "clusters outside the view volume are not transformed; their culling is still counted",
      &SkipSwitches::frustum},
+    {"cleared_tiles", "memory of cleared tiles until something uses it", &SkipSwitches::cleared_tiles},
+    {"hidden_tiles", "coverage and depth tests of samples in tiles that the coarse test kills",
+     &SkipSwitches::hidden_tiles},
     {"accepted_tiles", "depth tests of samples in tiles that the coarse test accepts whole",
      &SkipSwitches::accepted_tiles},
     {"plane_tiles", "depth tests of samples where the bounds of two planes decide",

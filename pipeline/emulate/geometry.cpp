@@ -57,7 +57,7 @@ void assemble(const PassContext& context, const Segment& segment, GeometryItem& 
   }
 }
 
-// A draw outside the view volume: every triangle goes the way that `add` would send it.
+// An item outside the view volume: every triangle goes the way that `add` would send it.
 void count_outside(const PassContext& context, const GeometryItem& item, std::vector<PassCounters>& chunks) {
   for (std::uint32_t i = 0; i < item.primitive_count; ++i) {
     const std::uint32_t primitive = context.draws[item.draw].first_primitive + item.first_primitive + i;
@@ -92,7 +92,6 @@ Segment make_segment(const PassContext& context, std::uint32_t first, std::uint3
   }
   segment.vertices.resize(vertices);
   segment.varyings.resize(scalars);
-  segment.outside.assign(last - first, 0);
   return segment;
 }
 
@@ -108,7 +107,7 @@ void run_primitives(const PassContext& context, Segment& segment, int jobs, std:
   parallel_for(segment.last_item - segment.first_item, jobs, [&](std::size_t i, int worker_number) {
     GeometryItem& item = segment.items[segment.first_item + i];
     BinWorker& worker = workers[static_cast<std::size_t>(worker_number)];
-    if (segment.outside[item.draw - segment.first_draw] != 0) {
+    if (item.outside) {
       count_outside(context, item, worker.chunks);
       item.bin_start.assign(
           static_cast<std::size_t>(context.bins_x * context.bins_y) * context.viewports.size() + 1, 0);

@@ -87,20 +87,26 @@ std::uint64_t GpuImage::lanes_inside(int block_index) const {
   return inside;
 }
 
-void GpuImage::use_all(int jobs) {
+template <class Body>
+void GpuImage::for_each_block(int jobs, const Body& body) {
   parallel_for(static_cast<std::size_t>(blocks_y), jobs, [&](std::size_t row, int) {
     const int row_blocks = blocks_x * layers;
-    for (int i = 0; i < row_blocks; ++i) use(static_cast<int>(row) * row_blocks + i);
+    for (int i = 0; i < row_blocks; ++i) body(static_cast<int>(row) * row_blocks + i);
   });
 }
 
+void GpuImage::start_all(int jobs) {
+  if (info(format).is_depth) return for_each_block(jobs, [&](int block) { use_planes(block); });
+  use_all(jobs);
+}
+
+void GpuImage::use_all(int jobs) {
+  for_each_block(jobs, [&](int block) { use(block); });
+}
+
 void GpuImage::expand_all(int jobs) {
-  parallel_for(static_cast<std::size_t>(blocks_y), jobs, [&](std::size_t row, int) {
-    const int row_blocks = blocks_x * layers;
-    for (int i = 0; i < row_blocks; ++i) {
-      const int block = static_cast<int>(row) * row_blocks + i;
-      if (plane_count[static_cast<std::size_t>(block)] != 0) expand_depth_tile(*this, block);
-    }
+  for_each_block(jobs, [&](int block) {
+    if (plane_count[static_cast<std::size_t>(block)] != 0) expand_depth_tile(*this, block);
   });
 }
 

@@ -91,6 +91,8 @@ struct GpuImage {
   }
   void fill(int block_index);
   void start_planes(int block_index);
+  /// Fills what is marked, depth as planes.
+  void start_all(int jobs);
   /// Before texels anywhere are read: fills what is still marked.
   void use_all(int jobs);
   /// Texels in place of planes; cleared tiles stay so.
@@ -136,6 +138,10 @@ struct GpuImage {
     return static_cast<std::size_t>(block_index(x, y)) * block_words() +
            static_cast<std::size_t>((sample * words + word) * kBlockLanes + lane_of(x & 7, y & 7));
   }
+
+ private:
+  template <class Body>
+  void for_each_block(int jobs, const Body& body);
 };
 
 /// One texel decoded to linear floats (integer formats: the value as a float; depth: 0..1 in r).

@@ -59,6 +59,8 @@ struct BinWorker {
   std::vector<ImageStore> stores;
   std::vector<PassCounters> chunks;
   std::uint32_t current_chunk = 0;
+  std::uint64_t hidden_tiles_skipped = 0;
+  std::uint64_t hidden_samples_passed = 0;  ///< 0, or the coarse test is wrong; known with its skip off
   std::uint64_t accepted_tiles_skipped = 0;
   std::uint64_t plane_tiles_skipped = 0;
   const DrawInfo* draw = nullptr;  ///< of the quads in `batch`

@@ -51,10 +51,11 @@ struct DrawInfo {
 inline constexpr std::uint32_t kClippedVertexBit = 0x80000000u;
 
 /// Up to kItemPrimitives primitives of one draw.
-inline constexpr std::uint32_t kItemPrimitives = 2048;
+inline constexpr std::uint32_t kItemPrimitives = kClusterTriangles;
 struct GeometryItem {
   std::uint32_t draw = 0;
   std::uint32_t first_primitive = 0, primitive_count = 0;  ///< within the draw
+  bool outside = false;                                    ///< no part of it is in the view volume
 
   std::vector<RasterTriangle> triangles;
   std::vector<float> clipped_varyings;
@@ -78,7 +79,6 @@ struct Segment {
   std::uint32_t first_draw = 0;
   std::vector<std::uint32_t> vertex_base;  ///< of each draw of the segment: its first element of `vertices`
   std::vector<std::size_t> varying_base;   ///< likewise of `varyings`
-  std::vector<char> outside;               ///< likewise: no part of it is in the view volume
 };
 
 }  // namespace hwsim::pipeline

@@ -13,17 +13,10 @@ namespace {
 
 constexpr std::uint32_t kVertexTask = 1024;  // vertices of one parallel task
 
-// Every corner of the mesh's box outside one plane, with a margin for rounding: then so is every triangle.
-bool outside_view(const DrawInfo& draw, const GuardBand& band) {
-  const VertexProgram& program = *draw.batch->vertex;
-  // A geometry program may place what it emits anywhere.
-  if (program.clip_from_world == nullptr || draw.batch->geometry != nullptr) return false;
-  const glm::mat4 clip =
-      *program.clip_from_world(draw.batch->vertex_uniforms.get()) * glm::make_mat4(draw.world_from_local);
+// Every corner of the box outside one plane, with a margin for rounding: then so is every triangle in it.
+bool outside_view(const glm::mat4& clip, const glm::vec3& a, const glm::vec3& b, const GuardBand& band) {
   int common = 63;
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3& a = draw.mesh->bounds_min;
-    const glm::vec3& b = draw.mesh->bounds_max;
     const glm::vec4 p = clip * glm::vec4((corner & 1) != 0 ? b.x : a.x, (corner & 2) != 0 ? b.y : a.y,
                                          (corner & 4) != 0 ? b.z : a.z, 1.0f);
     const float margin = 1e-4f * (std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z) + std::fabs(p.w));
@@ -39,6 +32,34 @@ bool outside_view(const DrawInfo& draw, const GuardBand& band) {
     common &= code;
   }
   return common != 0;
+}
+
+/// The clusters of a draw of a whole part; a list's triangles lie in any order.
+std::span<const TriangleCluster> clusters_of(const DrawInfo& draw) {
+  const bool whole_part = draw.part != nullptr && draw.batch->state.raster.topology == Topology::triangles &&
+                          draw.indices == draw.mesh->indices.data() + draw.part->first_index &&
+                          draw.index_count == draw.part->index_count;
+  if (!whole_part) return {};
+  return draw.part->clusters;
+}
+
+/// Marks the items of one draw that lie outside the view volume; returns how many they are.
+std::uint64_t mark_outside(const DrawInfo& draw, const GuardBand& band, std::span<GeometryItem> items) {
+  const VertexProgram& program = *draw.batch->vertex;
+  // A geometry program may place what it emits anywhere.
+  if (program.clip_from_world == nullptr || draw.batch->geometry != nullptr) return 0;
+  const glm::mat4 clip =
+      *program.clip_from_world(draw.batch->vertex_uniforms.get()) * glm::make_mat4(draw.world_from_local);
+  const bool whole = outside_view(clip, draw.mesh->bounds_min, draw.mesh->bounds_max, band);
+  const std::span<const TriangleCluster> clusters = clusters_of(draw);
+  std::uint64_t count = 0;
+  for (GeometryItem& item : items) {
+    const std::size_t cluster = item.first_primitive / kItemPrimitives;
+    item.outside = whole || (!clusters.empty() && outside_view(clip, clusters[cluster].bounds_min,
+                                                               clusters[cluster].bounds_max, band));
+    count += item.outside ? 1 : 0;
+  }
+  return count;
 }
 
 void fetch_vertices(const DrawInfo& draw, std::uint32_t first, int count, VertexBatch& batch) {
@@ -105,14 +126,30 @@ struct VertexTask {
   std::uint32_t draw, first, count;
 };
 
+/// Marks the tasks of a draw whose vertices an item in view may use.
+void mark_needed(const DrawInfo& draw, const GeometryItem& item, std::vector<char>& needed) {
+  if (item.outside) return;
+  std::uint32_t first = 0, last = static_cast<std::uint32_t>(needed.size()) - 1;
+  if (const std::span<const TriangleCluster> clusters = clusters_of(draw); !clusters.empty()) {
+    const TriangleCluster& cluster = clusters[item.first_primitive / kItemPrimitives];
+    first = (cluster.first_vertex - draw.first_vertex) / kVertexTask;
+    last = (cluster.last_vertex - draw.first_vertex) / kVertexTask;
+  }
+  std::fill(needed.begin() + first, needed.begin() + last + 1, 1);
+}
+
 std::vector<VertexTask> vertex_tasks(const PassContext& context, const Segment& segment) {
   std::vector<VertexTask> tasks;
-  for (std::size_t i = 0; i < segment.vertex_base.size(); ++i) {
-    if (segment.outside[i] != 0) continue;
-    const auto draw = segment.first_draw + static_cast<std::uint32_t>(i);
-    const std::uint32_t count = context.draws[draw].vertex_count;
-    for (std::uint32_t first = 0; first < count; first += kVertexTask)
-      tasks.push_back({draw, first, std::min(kVertexTask, count - first)});
+  std::vector<char> needed;
+  for (auto item = segment.items.begin(); item != segment.items.end();) {
+    const std::uint32_t number = item->draw;
+    const DrawInfo& draw = context.draws[number];
+    needed.assign((draw.vertex_count + kVertexTask - 1) / kVertexTask, 0);
+    for (; item != segment.items.end() && item->draw == number; ++item) mark_needed(draw, *item, needed);
+    for (std::uint32_t i = 0; i < needed.size(); ++i)
+      if (needed[i] != 0)
+        tasks.push_back(
+            {number, i * kVertexTask, std::min(kVertexTask, draw.vertex_count - i * kVertexTask)});
   }
   return tasks;
 }
@@ -199,9 +236,11 @@ std::vector<std::uint32_t> count_cache_misses(std::span<const std::uint32_t> ind
 
 std::uint64_t mark_outside(const PassContext& context, Segment& segment) {
   std::uint64_t count = 0;
-  for (std::size_t i = 0; i < segment.outside.size(); ++i) {
-    segment.outside[i] = outside_view(context.draws[segment.first_draw + i], context.band) ? 1 : 0;
-    count += segment.outside[i] != 0 ? 1 : 0;
+  for (std::size_t first = 0, last = 0; first < segment.items.size(); first = last) {
+    const std::uint32_t draw = segment.items[first].draw;
+    while (last < segment.items.size() && segment.items[last].draw == draw) ++last;
+    count += mark_outside(context.draws[draw], context.band,
+                          std::span(segment.items).subspan(first, last - first));
   }
   return count;
 }

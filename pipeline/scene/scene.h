@@ -70,6 +70,13 @@ struct Material {
 
 /// Positions are on the surface. A wire's vertex has its center at position - radius * normal, its axis is
 /// the tangent; meshes without wires leave `radius` empty.
+/// A run of a part's triangles: small enough to lie outside of a view that the mesh lies in.
+struct TriangleCluster {
+  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};
+  std::uint32_t first_vertex = 0, last_vertex = 0;  ///< the range that its indices span, both ends included
+};
+inline constexpr std::uint32_t kClusterTriangles = 2048;
+
 struct Mesh {
   std::string name;
   std::vector<glm::vec3> positions;
@@ -86,6 +93,7 @@ struct Mesh {
     std::uint32_t first_index = 0;
     std::uint32_t index_count = 0;  ///< a multiple of 3
     int material = 0;
+    std::vector<TriangleCluster> clusters = {};  ///< of each kClusterTriangles triangles; empty: not known
   };
   std::vector<Part> parts;
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};

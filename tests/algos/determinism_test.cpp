@@ -110,6 +110,31 @@ TEST_P(Determinism, SkippedWorkChangesNothing) {
   }
 }
 
+// A skip that never applies would make the comparisons above empty.
+TEST(Skips, EachAppliesSomewhere) {
+  std::map<std::string, std::uint64_t> skipped;
+  for (const FrameSetup& setup : {FrameSetup{"msaa4x", "sponza_hall", 320, 180},
+                                  FrameSetup{"deferred:samples=4", "grass:blades=2000", 320, 180}})
+    for (const auto& [name, count] : run_frame(setup, {}).skipped) skipped[name] += count;
+  for (const pipeline::SkipInfo& skip : pipeline::kSkips)
+    EXPECT_GT(skipped[std::string(skip.name)], 0u) << skip.name;
+}
+
+// The close-up shows a fifth of a body that is one mesh: as a whole it is in view.
+TEST(Skips, ClustersBesideTheViewAreSkipped) {
+  FrameSetup setup{"none", "car_body", 160, 90};
+  setup.camera = 1;
+  const Emulation with = run_frame(setup, {});
+  std::uint64_t culled = 0;
+  for (const PassWork& pass : with.trace.passes)
+    if (pass.name == "forward")
+      for (const PassCounters& chunk : pass.chunks) culled += chunk.setup.culled_frustum_primitives;
+  EXPECT_GT(with.skipped.at("frustum") * pipeline::kClusterTriangles, culled / 4);
+  EmulationOptions options;
+  options.skip.frustum = false;
+  EXPECT_EQ(difference(with, run_frame(setup, options)), "");
+}
+
 INSTANTIATE_TEST_SUITE_P(Techniques, Determinism, ::testing::ValuesIn(technique_variants()),
                          [](const auto& parameter) {
                            std::string name = parameter.param;

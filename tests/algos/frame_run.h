@@ -44,6 +44,7 @@ inline GpuFeatures test_features() { return every_feature(8); }
 struct FrameSetup {
   std::string technique, scene;
   int width_px = 320, height_px = 180;
+  int camera = 0;
 };
 
 inline pipeline::FrameGraph build_graph(const FrameSetup& setup) {
@@ -51,6 +52,7 @@ inline pipeline::FrameGraph build_graph(const FrameSetup& setup) {
   request.scene = generated_scene(setup.scene);
   request.width_px = setup.width_px;
   request.height_px = setup.height_px;
+  request.camera = setup.camera;
   request.shadow_map_px = 512;
   request.point_lights = 8;
   request.features = test_features();

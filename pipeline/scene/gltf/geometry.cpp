@@ -256,6 +256,24 @@ class MeshBuilder {
       mesh_.bounds_min = glm::min(mesh_.bounds_min, mesh_.positions[i]);
       mesh_.bounds_max = glm::max(mesh_.bounds_max, mesh_.positions[i]);
     }
+    for (Mesh::Part& part : mesh_.parts)
+      for (std::uint32_t i = 0; i < part.index_count; i += 3 * kClusterTriangles)
+        part.clusters.push_back(
+            cluster_of(part.first_index + i, std::min(3 * kClusterTriangles, part.index_count - i)));
+  }
+
+  TriangleCluster cluster_of(std::uint32_t first_index, std::uint32_t count) const {
+    TriangleCluster cluster;
+    cluster.first_vertex = cluster.last_vertex = mesh_.indices[first_index];
+    cluster.bounds_min = cluster.bounds_max = mesh_.positions[cluster.first_vertex];
+    for (std::uint32_t i = first_index; i < first_index + count; ++i) {
+      const std::uint32_t v = mesh_.indices[i];
+      cluster.first_vertex = std::min(cluster.first_vertex, v);
+      cluster.last_vertex = std::max(cluster.last_vertex, v);
+      cluster.bounds_min = glm::min(cluster.bounds_min, mesh_.positions[v]);
+      cluster.bounds_max = glm::max(cluster.bounds_max, mesh_.positions[v]);
+    }
+    return cluster;
   }
 
   /// Files hold a wire's center line (techniques 6); everything but wire anti-aliasing draws its surface.
