@@ -14,8 +14,9 @@ template <class T>
 struct FlowTable {
   std::size_t units = 0;
   std::size_t chunks = 0;
-  std::vector<T> ns;            ///< service of a whole chunk: ns[chunk * units + unit]
-  std::vector<T> latency_ns;    ///< in the same order: between the end of a packet here and its next unit
+  std::vector<T> ns;  ///< service of a whole chunk: ns[chunk * units + unit]
+  std::vector<T>
+      latency_ns;  ///< in the same order: between the end of a packet here and its next unit, or its end
   std::vector<T> room_packets;  ///< in the same order: how far the unit may run ahead of the next one
   std::vector<double> packets;  ///< of each chunk, at least 1
 };
@@ -115,9 +116,15 @@ class PacketFlow {
     result.critical_ns.assign(t_.units, T(0.0));
     if (t_.units == 0 || t_.chunks == 0) return result;
     Place at{t_.units - 1, t_.chunks - 1, true};
+    const auto left = [this](std::size_t i) { return end_[i] + t_.latency_ns[i]; };
     for (std::size_t u = 0; u + 1 < t_.units; ++u)
-      if (end_[index(at.u, at.k)] < end_[index(u, at.k)]) at.u = u;
-    result.makespan_ns = end_[index(at.u, at.k)];
+      if (left(index(at.u, at.k)) < end_[index(u, at.k)]) at.u = u;
+    for (std::size_t k = 0; k < t_.chunks; ++k)
+      if (left(index(at.u, at.k)) < left(index(t_.units - 1, k))) at = {t_.units - 1, k, true};
+    const std::size_t last = index(at.u, at.k);
+    const bool behind = at.u + 1 == t_.units;  // what leaves the last unit still takes its latency
+    result.makespan_ns = behind ? left(last) : end_[last];
+    result.critical_ns[at.u] += behind ? t_.latency_ns[last] : T(0.0);
     for (bool more = true; more;) more = step(at, result.critical_ns);
     share(result);
     return result;

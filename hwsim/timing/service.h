@@ -9,9 +9,9 @@ struct ChunkCost {
   std::array<T, kUnitCount> ns;
   StreamBytesOf<T> dram;
   double packets = 1.0;
-  T shader_latency_ns{0.0};   ///< from a subgroup's dispatch to its end
-  T resident_packets{0.0};    ///< that the cores hold at once
-  T line_ahead_packets{0.0};  ///< for which fixed-function units have lines on their way
+  T shader_latency_ns{0.0};  ///< from a subgroup's dispatch to its end
+  T core_fills{0.0};         ///< how often its subgroups fill the cores
+  T line_fills{0.0};         ///< how often its lines fill what a fixed-function unit has on their way
   ChunkCost() { ns.fill(T(0.0)); }
 };
 
@@ -224,10 +224,9 @@ void set_waiting(const PassCounters& c, const PassWork& pass, const ChunkTraffic
   const double subgroups = subgroups_of(c, r.subgroup_size);
   if (subgroups > 0.0) {
     cost.shader_latency_ns = subgroup_life_ns(c, traffic, shader_pipes(c, r).fullest(), subgroups, r);
-    cost.resident_packets = resident_subgroups(c, pass, r) * r.shader_cores * (cost.packets / subgroups);
+    cost.core_fills = subgroups / (resident_subgroups(c, pass, r) * r.shader_cores);
   }
-  const T bytes = larger(traffic.l2_bytes, traffic.dram.total());
-  if (bytes > T(0.0)) cost.line_ahead_packets = (r.unit_lines * (kTextureLineBytes * cost.packets)) / bytes;
+  cost.line_fills = larger(traffic.l2_bytes, traffic.dram.total()) / (r.unit_lines * kTextureLineBytes);
 }
 
 /// Bytes, and two turns of the bus for each group of writes that has reads around it.

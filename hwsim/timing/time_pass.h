@@ -70,15 +70,29 @@ void roofline_time(PassTime<T>& time, const GpuRates<T>& rates) {
   for (std::size_t u = 0; u < kUnitCount; ++u) time.stack_ns[u] = time.time_ns * powers[u] / sum;
 }
 
-/// How far a unit may run ahead of the next one that has work: the queue between them, what the cores hold,
-/// and lines on their way.
+/// For each chunk, the packets up to its end that fill a place once; more than there are while it is not
+/// full. Those that put nothing there count as packets all the same: they pass between the others.
 template <class T>
-T room_packets(const ChunkCost<T>& cost, std::size_t unit, std::size_t next, const GpuRates<T>& rates) {
-  T room(rates.queue_packets);
-  const bool leaves_cores = unit == at(Unit::tex) || (unit == at(Unit::shader) && next != at(Unit::tex));
-  if (leaves_cores || unit == at(Unit::shader)) room += cost.resident_packets;
-  if (next >= at(Unit::l2)) room += cost.line_ahead_packets;
-  return room;
+std::vector<T> packets_of_a_fill(const std::vector<ChunkCost<T>>& costs, T ChunkCost<T>::*fills) {
+  std::vector<T> packets;
+  packets.reserve(costs.size());
+  T inside(0.0);  // fills of chunks [first, k]
+  double inside_packets = 0.0;
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < costs.size(); ++k) {
+    inside += costs[k].*fills;
+    inside_packets += costs[k].packets;
+    for (; !(inside - costs[first].*fills < T(1.0)) && first < k; ++first) {
+      inside -= costs[first].*fills;
+      inside_packets -= costs[first].packets;
+    }
+    const T over = inside - T(1.0);
+    if (over < T(0.0))
+      packets.push_back(T(2.0 * inside_packets + 1.0));
+    else
+      packets.push_back(inside_packets - over / (costs[first].*fills) * costs[first].packets);
+  }
+  return packets;
 }
 
 /// The queue engine's input: units without work in this pass are bypassed.
@@ -86,12 +100,23 @@ template <class T>
 FlowTable<T> flow_table(const std::vector<ChunkCost<T>>& costs, const std::vector<std::size_t>& units,
                         const GpuRates<T>& rates) {
   FlowTable<T> table{units.size(), costs.size(), {}, {}, {}, {}};
-  for (const ChunkCost<T>& cost : costs) {
+  const std::vector<T> resident = packets_of_a_fill(costs, &ChunkCost<T>::core_fills),
+                       lines_ahead = packets_of_a_fill(costs, &ChunkCost<T>::line_fills);
+  for (std::size_t k = 0; k < costs.size(); ++k) {
+    const ChunkCost<T>& cost = costs[k];
+    // How far a unit may run ahead of the next one that has work: the queue between them, what the cores
+    // hold, and lines on their way.
+    const auto room = [&](std::size_t unit, std::size_t next) {
+      T packets(rates.queue_packets);
+      if (unit == at(Unit::shader) || unit == at(Unit::tex)) packets += resident[k];
+      if (next >= at(Unit::l2)) packets += lines_ahead[k];
+      return packets;
+    };
     table.packets.push_back(cost.packets);
     for (std::size_t i = 0; i < units.size(); ++i) {
       const bool last = i + 1 == units.size();
       table.ns.push_back(cost.ns[units[i]]);
-      table.room_packets.push_back(last ? T(0.0) : room_packets(cost, units[i], units[i + 1], rates));
+      table.room_packets.push_back(last ? T(0.0) : room(units[i], units[i + 1]));
       const bool in_cores = !last && units[i + 1] == at(Unit::tex);
       const bool leaves_cores = units[i] == at(Unit::tex) || (units[i] == at(Unit::shader) && !in_cores);
       table.latency_ns.push_back(leaves_cores ? cost.shader_latency_ns : T(0.0));

@@ -48,6 +48,21 @@ TEST(Detailed, EqualsTheQueueWhereOneUnitLimits) {
   for (const auto& [name, pass] : cases) EXPECT_NEAR(ratio_to_queue(pass, gpu), 1.0, 0.02) << name;
 }
 
+// A few subgroups that live long among many packets without any: these pass by, in both engines.
+TEST(Detailed, EqualsTheQueueWhereFewPacketsGoThroughTheCores) {
+  PassCounters plain;
+  plain.raster.quads = 512;
+  PassCounters shaded = plain;
+  shaded.stats.fragment_shader_invocations = 32 * 4;
+  shaded.shader.alu_chain_lane_ops = 32 * 4 * 500;
+  PassWork pass = repeated(PassKind::draw, plain, 64);
+  for (std::size_t k = 0; k < pass.chunks.size(); k += 8) pass.chunks[k] = shaded;
+  GpuConfig gpu = sample_gpu();
+  gpu.alu_latency_cycles = 10;
+  EXPECT_NEAR(ratio_to_queue(pass, gpu), 1.0, 0.02);  // 64 x 64 clocks of the rasterizer, and one life
+  EXPECT_NEAR(time_one(pass, gpu).time_ns, 56 * 64.0 + 64.0 + 5000.0, 200.0);
+}
+
 TEST(Detailed, L2AndDramReachTheirPeaks) {
   GpuConfig gpu = sample_gpu();
   PassCounters c;
