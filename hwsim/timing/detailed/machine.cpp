@@ -126,12 +126,15 @@ bool Machine::enter(std::uint64_t packet) {
   ++entered_;
   if (shades) {
     const double start = std::max(ready, now_ns_);
-    front_done_.back()[slot] = dispatched_ns_ = start;
+    dispatched_ns_ = std::max(dispatched_ns_, start);
+    front_done_.back()[slot] = start;
     dispatch(chunk, core, start);
     return true;
   }
-  const Leaving out = finish(chunk, ready);
-  front_done_.back()[slot] = dispatched_ns_ = out.accepted_ns;
+  // Of a chunk that shades, only subgroups have work behind the cores.
+  const Leaving out = chunk.subgroups > 0.0 ? Leaving{ready, ready} : finish(chunk, ready);
+  dispatched_ns_ = std::max(dispatched_ns_, out.accepted_ns);
+  front_done_.back()[slot] = out.accepted_ns;
   last_ns_ = std::max(last_ns_, out.done_ns);
   events_since_progress_ = 0;
   return true;
@@ -147,8 +150,8 @@ double Machine::front(const ChunkPackets& chunk) {
     if (entered_ >= fifo_packets_) start = std::max(start, front_done_[u + 1][slot]);
     start = std::max(start, front_free_[u]);
     if (kFrontUnits[u] == Unit::ia)
-      start = move(chunk, {Stream::vertex, Stream::index, Stream::constant}, start, ia_lines_);
-    if (kFrontUnits[u] == Unit::zrop) start = move(chunk, {Stream::depth}, start, depth_lines_);
+      start = move(chunk, {Stream::vertex, Stream::index, Stream::constant}, 1.0, start, ia_lines_);
+    if (kFrontUnits[u] == Unit::zrop) start = move(chunk, {Stream::depth}, 1.0, start, depth_lines_);
     ready = serve(front_free_[u], start, chunk.service_ns[at(kFrontUnits[u])], kFrontUnits[u]);
     front_done_[u][slot] = ready;
   }
@@ -180,7 +183,7 @@ void Machine::dispatch(const ChunkPackets& chunk, std::size_t core, double ns) {
   idle_.pop_back();
   const bool fetches = chunk.work.l1_lines > 0.0 || chunk.work.storage_lines > 0.0 || chunk.work.tex_ns > 0.0;
   const int phases = std::max(fetches ? 1 : 0, static_cast<int>(whole(chunk.work.memory_phases)));
-  subgroups_[index] = {&chunk, core, 0, phases};
+  subgroups_[index] = {&chunk, core, 0, phases, 0.0, 0.0, 0.0, 0.0};
   cores_[core].resident += 1.0;
   push(ns, index, Step::work);
 }
@@ -191,6 +194,8 @@ void Machine::handle(const Event& event) {
       return work(event.subgroup, event.ns);
     case Step::fetch:
       return fetch(event.subgroup, event.ns);
+    case Step::more:
+      return ask(cores_[subgroups_[event.subgroup].core], event.ns);
     case Step::leave:
       return leave(event.subgroup, event.ns);
     case Step::release:
@@ -226,28 +231,44 @@ void Machine::fetch(std::uint32_t index, double now) {
   const double part = 1.0 / s.phases;
   core.tex_ns = std::max(core.tex_ns, now) + w.tex_ns * part;
   tex_busy_ += w.tex_ns * part;
-  double ready = core.tex_ns;
-  const double lookups = whole(w.l1_lines * part), loads = whole(w.storage_lines * part);
-  for (double i = 0.0; i < lookups; i += 1.0)
-    if (!core.l1.access(core.reads.next(l1_survival_, false, 1.0, 0.0), false).hit)
-      ready = std::max(ready, fetch_line(core, Stream::texture, core.tex_ns));
-  for (double i = 0.0; i < loads; i += 1.0) ready = std::max(ready, fetch_line(core, Stream::storage, now));
-  ++s.phase;
-  push(ready + rates_.tex_latency_ns, index, Step::work);
+  s.ready_ns = s.asks_from_ns = core.tex_ns;
+  s.loads = whole(w.storage_lines * part);
+  s.textures = 0.0;
+  for (double i = whole(w.l1_lines * part); i > 0.0; i -= 1.0)
+    if (!core.l1.access(core.reads.next(l1_survival_, false, 1.0, 0.0), false).hit) s.textures += 1.0;
+  core.fetching.push_back(index);
+  if (core.fetching.size() == 1) ask(core, now);
 }
 
-// A core has a limited number of lines on their way.
-double Machine::fetch_line(Core& core, Stream stream, double now) {
-  while (!core.misses.empty() && core.misses.front() <= now) core.misses.pop_front();
-  double start = now;
-  if (core.misses.size() >= kCoreMissesMax) {
-    start = std::max(start, core.misses.front());
-    core.misses.pop_front();
+// A core has a limited number of lines on their way. What it cannot ask for yet it asks for when some have
+// come: asking ahead of time would take DRAM's place from requests of other units that come before.
+void Machine::ask(Core& core, double now) {
+  constexpr std::size_t kTogether = 16;
+  while (!core.fetching.empty()) {
+    const std::uint32_t index = core.fetching.front();
+    Subgroup& s = subgroups_[index];
+    if (!ask_lines(core, s, now))
+      return push(std::max(core.misses.front(), core.misses[kTogether - 1]), index, Step::more);
+    ++s.phase;
+    push(s.ready_ns + rates_.tex_latency_ns, index, Step::work);
+    core.fetching.pop_front();
   }
-  const double arrives =
-      memory_.access(MemoryClient::reads, stream, reads_[at(stream)], 1.0, false, false, start);
-  core.misses.push_back(arrives);
-  return arrives;
+}
+
+bool Machine::ask_lines(Core& core, Subgroup& s, double now) {
+  const double start = std::max(now, s.asks_from_ns);
+  while (s.textures > 0.0 || s.loads > 0.0) {
+    while (!core.misses.empty() && core.misses.front() <= start) core.misses.pop_front();
+    if (core.misses.size() >= kCoreMissesMax) return false;
+    const bool texture = s.textures > 0.0;
+    const Stream stream = texture ? Stream::texture : Stream::storage;
+    const double arrives =
+        memory_.access(MemoryClient::reads, stream, reads_[at(stream)], 1.0, false, false, start);
+    core.misses.push_back(arrives);
+    s.ready_ns = std::max(s.ready_ns, arrives);
+    (texture ? s.textures : s.loads) -= 1.0;
+  }
+  return true;
 }
 
 void Machine::leave(std::uint32_t index, double now) {
@@ -269,25 +290,25 @@ Machine::Leaving Machine::finish(const ChunkPackets& chunk, double now) {
   const double accepted = finished_ >= fifo_packets_ ? std::max(now, leave_done_[slot]) : now;
   ++finished_;
   double start = std::max(accepted, crop_free_);
-  start = move(chunk, {Stream::color, Stream::other}, start, color_lines_);
-  if (chunk.l2.write[at(Stream::storage)] > 0.0)
-    start =
-        move_lines(chunk.l2.write[at(Stream::storage)], Stream::storage, true, false, start, color_lines_);
-  double done = serve(crop_free_, start, chunk.service_ns[at(Unit::crop)], Unit::crop);
-  if (chunk.service_ns[at(Unit::resolve)] > 0.0)
-    done = std::max(done, serve(resolve_free_, start, chunk.service_ns[at(Unit::resolve)], Unit::resolve));
+  const double packets = chunk.leaving_packets;
+  start = move(chunk, {Stream::color, Stream::other}, packets, start, color_lines_);
+  const double stored = chunk.l2.write[at(Stream::storage)] * packets;
+  if (stored > 0.0) start = move_lines(stored, Stream::storage, true, false, start, color_lines_);
+  double done = serve(crop_free_, start, chunk.service_ns[at(Unit::crop)] * packets, Unit::crop);
+  const double resolve_ns = chunk.service_ns[at(Unit::resolve)] * packets;
+  if (resolve_ns > 0.0) done = std::max(done, serve(resolve_free_, start, resolve_ns, Unit::resolve));
   leave_done_[slot] = done;
   return {accepted, done};
 }
 
-double Machine::move(const ChunkPackets& chunk, std::initializer_list<Stream> streams, double now,
-                     std::deque<double>& outstanding) {
+double Machine::move(const ChunkPackets& chunk, std::initializer_list<Stream> streams, double packets,
+                     double now, std::deque<double>& outstanding) {
   for (const Stream stream : streams) {
     const std::size_t i = at(stream);
-    now = move_lines(chunk.l2.read[i], stream, false, false, now, outstanding);
-    now = move_lines(chunk.l2.write[i], stream, true, false, now, outstanding);
-    now = move_lines(chunk.direct.read[i], stream, false, true, now, outstanding);
-    now = move_lines(chunk.direct.write[i], stream, true, true, now, outstanding);
+    now = move_lines(packets * chunk.l2.read[i], stream, false, false, now, outstanding);
+    now = move_lines(packets * chunk.l2.write[i], stream, true, false, now, outstanding);
+    now = move_lines(packets * chunk.direct.read[i], stream, false, true, now, outstanding);
+    now = move_lines(packets * chunk.direct.write[i], stream, true, true, now, outstanding);
   }
   return now;
 }

@@ -41,7 +41,7 @@ class Machine {
   const MemorySystem& memory() const { return memory_; }
 
  private:
-  enum class Step : unsigned char { work, fetch, leave, release };
+  enum class Step : unsigned char { work, fetch, more, leave, release };
   struct Event {
     double ns;
     std::uint64_t number;  ///< ties in the order in which they were made
@@ -53,6 +53,8 @@ class Machine {
     const ChunkPackets* chunk = nullptr;
     std::size_t core = 0;
     int phase = 0, phases = 0;
+    double textures = 0.0, loads = 0.0;  ///< lines still to be asked for
+    double asks_from_ns = 0.0, ready_ns = 0.0;
   };
   struct Core {
     Core(std::size_t l1_lines, std::uint64_t seed) : l1(l1_lines, 8), reads(0, 2 * l1_lines, seed) {}
@@ -60,7 +62,8 @@ class Machine {
     double resident = 0.0;
     LineCache l1;
     AddressSource reads;
-    std::deque<double> misses;  ///< when the lines that are on their way arrive
+    std::deque<double> misses;           ///< when the lines that are on their way arrive
+    std::deque<std::uint32_t> fetching;  ///< subgroups with lines still to be asked for, in turn
     double l1_has() const { return static_cast<double>(std::min(l1.lines(), reads.lines())); }
     void pass_by(double lines) {
       for (double i = std::min(lines, static_cast<double>(l1.lines())); i >= 1.0; i -= 1.0)
@@ -82,12 +85,13 @@ class Machine {
   void handle(const Event& event);
   void work(std::uint32_t index, double now);
   void fetch(std::uint32_t index, double now);
-  double fetch_line(Core& core, Stream stream, double now);
+  void ask(Core& core, double now);
+  bool ask_lines(Core& core, Subgroup& s, double now);
   void leave(std::uint32_t index, double now);
   void release(std::uint32_t index);
   Leaving finish(const ChunkPackets& chunk, double now);
   double serve(double& free_ns, double now, double service_ns, Unit unit);
-  double move(const ChunkPackets& chunk, std::initializer_list<Stream> streams, double now,
+  double move(const ChunkPackets& chunk, std::initializer_list<Stream> streams, double packets, double now,
               std::deque<double>& outstanding);
   double move_lines(double bytes, Stream stream, bool write, bool bypass, double now,
                     std::deque<double>& outstanding);

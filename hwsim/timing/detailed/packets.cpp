@@ -128,6 +128,7 @@ PacketPlan plan_packets(const PassWork& pass, const GpuRates<double>& rates) {
     plan.packets += chunk.count;
     for (std::size_t u = 0; u < kUnitCount; ++u)
       chunk.service_ns[u] = cost.ns[u] / static_cast<double>(chunk.count);
+    if (chunk.subgroups > 0.0) chunk.leaving_packets = static_cast<double>(chunk.count) / chunk.subgroups;
     chunk.resident = std::floor(resident_subgroups(c, pass, rates));
     if (chunk.subgroups > 0.0)
       chunk.work =

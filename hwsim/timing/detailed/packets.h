@@ -21,7 +21,9 @@ struct SubgroupWork {
 struct ChunkPackets {
   std::uint64_t first = 0, count = 0;  ///< packets
   double subgroups = 0.0;
-  double resident = 1.0;                        ///< subgroups of this kind that a core holds
+  double leaving_packets =
+      1.0;                ///< that the ROPs' work of a leaving one stands for: only subgroups bring them any
+  double resident = 1.0;  ///< subgroups of this kind that a core holds
   std::array<double, kUnitCount> service_ns{};  ///< of one packet, units that all packets go through
   SubgroupWork work;
   double expected_ns = 0.0, expected_bytes = 0.0;  ///< of a packet, by the closed forms: what samples weigh
