@@ -69,7 +69,7 @@ class MemorySystem {
   double l2_free_ns() const { return l2_calendar_.last_ns(); }
 
  private:
-  double l2_line_ns_, l2_latency_ns_, dram_latency_ns_;
+  double l2_line_ns_, l2_latency_ns_;
   double l2_busy_ns_ = 0.0;
   Calendar l2_calendar_{64.0};
   LineCache l2_;
