@@ -4,12 +4,14 @@
 //   engine_study OUT_DIR [WIDTHxHEIGHT [SCENE,... [TECHNIQUE,...]]]
 // keeps traces in OUT_DIR/traces, writes OUT_DIR/engines.csv, engines.md, engines.svg and costs.md.
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 #include "algos/technique.h"
 #include "hwsim/base/diagnostics.h"
@@ -116,8 +118,13 @@ StudyRow time_row(const WorkTrace& trace, const GpuConfig& gpu, Engine engine, d
 
 double error_pct(double value, double truth) { return truth > 0.0 ? 100.0 * (value / truth - 1.0) : 0.0; }
 
-void time_point(const WorkTrace& trace, const std::string& scene, const std::string& technique,
-                const GpuConfig& gpu, std::vector<StudyRow>& rows) {
+double fragments_of(const WorkTrace& trace) {
+  const PassCounters all = total(trace);
+  return static_cast<double>(all.stats.fragment_shader_invocations + all.stats.compute_shader_invocations);
+}
+
+std::vector<StudyRow> time_point(const WorkTrace& trace, const std::string& scene,
+                                 const std::string& technique, const GpuConfig& gpu) {
   std::vector<StudyRow> point = {time_row(trace, gpu, Engine::detailed, 1.0, 1),
                                  time_row(trace, gpu, Engine::roofline, 1.0, 5),
                                  time_row(trace, gpu, Engine::queue, 1.0, 5)};
@@ -130,8 +137,23 @@ void time_point(const WorkTrace& trace, const std::string& scene, const std::str
     row.time_error_pct = error_pct(row.time_ms - row.overhead_ms, whole.time_ms - whole.overhead_ms);
     row.byte_error_pct = error_pct(row.dram_mb, whole.dram_mb);
     row.times_as_fast = whole.wall_ms / row.wall_ms;
-    rows.push_back(row);
+    row.fragments = fragments_of(trace);
   }
+  return point;
+}
+
+/// All GPUs, two at a time: run times are those of a machine with both threads at work.
+void time_trace(const WorkTrace& trace, const std::string& scene, const std::string& technique,
+                const std::vector<GpuConfig>& gpus, std::vector<StudyRow>& rows) {
+  std::vector<std::vector<StudyRow>> points(gpus.size());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i; (i = next++) < gpus.size();) points[i] = time_point(trace, scene, technique, gpus[i]);
+  };
+  std::thread other(work);
+  work();
+  other.join();
+  for (const std::vector<StudyRow>& point : points) rows.insert(rows.end(), point.begin(), point.end());
 }
 
 double emulation_ms(const pipeline::FrameGraph& graph, const GpuConfig& gpu,
@@ -183,13 +205,10 @@ void study_replays(const WorkTrace& trace, std::ostream& out) {
     out << "\n1000 configurations by " << engine_name(engine) << ": " << seconds << " s, " << seconds
         << " ms a frame (mean frame " << sum / kConfigs * 1e-6 << " ms)\n";
   }
-  const PassCounters all = total(trace);
-  const double fragments =
-      static_cast<double>(all.stats.fragment_shader_invocations + all.stats.compute_shader_invocations);
   const auto start = std::chrono::steady_clock::now();
   time_frame(trace, gpu, Engine::detailed);
-  out << "\ndetailed: " << fragments / milliseconds_since(start) << " thousand fragments a second ("
-      << fragments << " fragments)\n";
+  out << "\ndetailed: " << fragments_of(trace) / milliseconds_since(start) << " thousand fragments a second ("
+      << fragments_of(trace) << " fragments)\n";
 }
 
 template <class Write>
@@ -207,7 +226,7 @@ int run(const Options& o) {
   for (const std::string& scene : o.scenes)
     for (const std::string& technique : o.techniques) {
       const WorkTrace trace = trace_of(scene, technique, features, o);
-      for (const GpuConfig& gpu : gpus) time_point(trace, scene, technique, gpu, rows);
+      time_trace(trace, scene, technique, gpus, rows);
       std::fprintf(stderr, "%s %s\n", scene.c_str(), technique.c_str());
       save(o.out + "/engines.csv", [&](std::ostream& out) { write_csv(rows, out); });
     }

@@ -72,7 +72,7 @@ std::map<std::string, EngineSummary> summarize(const std::vector<StudyRow>& rows
 
 void write_csv(const std::vector<StudyRow>& rows, std::ostream& out) {
   out << "scene,technique,gpu,engine,time_ms,overhead_ms,dram_mb,wall_ms,time_error_pct,byte_error_pct,"
-         "times_as_fast\n";
+         "times_as_fast,fragments\n";
   for (const StudyRow& r : rows)
     out << r.scene << ",\"" << r.technique << "\"," << r.gpu << ',' << r.engine << ',' << r.time_ms << ','
         << r.overhead_ms << ',' << r.dram_mb << ',' << r.wall_ms << ',' << r.time_error_pct << ','
@@ -91,6 +91,15 @@ void write_table(const std::vector<StudyRow>& rows, std::ostream& out) {
     out << " | " << number("%.1f", s.median_times_as_fast) << " | " << number("%.3f", s.median_wall_ms)
         << " |\n";
   }
+  std::vector<double> rates;
+  for (const StudyRow& row : rows)
+    if (row.engine == "detailed") rates.push_back(row.fragments / row.wall_ms);
+  std::sort(rates.begin(), rates.end());
+  if (!rates.empty())
+    out << "\n`detailed`: " << number("%.0f", rates[rates.size() / 2])
+        << " thousand fragments a second in the median, a tenth of the frames below "
+        << number("%.0f", rates[rates.size() / 10]) << ", the slowest " << number("%.0f", rates.front())
+        << "\n";
 }
 
 void write_svg(const std::vector<StudyRow>& rows, std::ostream& svg) {

@@ -13,6 +13,7 @@ struct StudyRow {
   std::string scene, technique, gpu, engine;
   double time_ms = 0.0, overhead_ms = 0.0, dram_mb = 0.0, wall_ms = 0.0;
   double time_error_pct = 0.0, byte_error_pct = 0.0, times_as_fast = 1.0;
+  double fragments = 0.0;  ///< and compute invocations, of the frame
 };
 
 struct Spread {

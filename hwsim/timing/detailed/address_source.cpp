@@ -5,42 +5,60 @@
 #include <cmath>
 
 namespace hwsim {
+namespace {
+
+constexpr std::size_t kWordBits = 64;
+
+/// The position of the rank-th bit that is set.
+std::size_t select_bit(std::uint64_t word, std::size_t rank) {
+  std::size_t position = 0;
+  for (int half = 32; half > 0; half /= 2) {
+    const auto low = static_cast<std::size_t>(std::popcount(word & ((std::uint64_t{1} << half) - 1)));
+    if (rank < low) continue;
+    rank -= low;
+    word >>= half;
+    position += static_cast<std::size_t>(half);
+  }
+  return position;
+}
+
+}  // namespace
 
 LruStack::LruStack(std::size_t lines_max)
     : lines_max_(std::max<std::size_t>(lines_max, 16)),
-      lines_(std::bit_ceil(2 * lines_max_)),
-      present_(lines_.size(), false),
-      sums_(lines_.size() + 1, 0) {}
+      lines_(std::max(kWordBits, std::bit_ceil(2 * lines_max_))),
+      present_(lines_.size() / kWordBits, 0),
+      sums_(present_.size() + 1, 0) {}
 
-void LruStack::add(std::size_t position, std::int32_t value) {
-  for (std::size_t i = position + 1; i < sums_.size(); i += i & (~i + 1)) sums_[i] += value;
+void LruStack::set(std::size_t position, bool present) {
+  const std::size_t word = position / kWordBits;
+  present_[word] ^= std::uint64_t{1} << position % kWordBits;
+  const std::int32_t change = present ? 1 : -1;
+  for (std::size_t i = word + 1; i < sums_.size(); i += i & (~i + 1)) sums_[i] += change;
 }
 
 std::size_t LruStack::place_of(std::size_t rank) const {
-  std::size_t position = 0;
+  std::size_t word = 0;
   auto rest = static_cast<std::int32_t>(rank);
-  for (std::size_t step = lines_.size(); step > 0; step /= 2)
-    if (position + step < sums_.size() && sums_[position + step] <= rest) {
-      position += step;
-      rest -= sums_[position];
+  for (std::size_t step = present_.size(); step > 0; step /= 2)
+    if (word + step < sums_.size() && sums_[word + step] <= rest) {
+      word += step;
+      rest -= sums_[word];
     }
-  return position;
+  return word * kWordBits + select_bit(present_[word], static_cast<std::size_t>(rest));
 }
 
 void LruStack::append(std::uint64_t line) {
   if (end_ == lines_.size()) compact();
   lines_[end_] = line;
-  present_[end_] = true;
-  add(end_++, 1);
+  set(end_++, true);
   ++count_;
 }
 
 bool LruStack::push(std::uint64_t line) {
   const bool full = count_ == lines_max_;
   if (full) {
-    const std::size_t oldest = place_of(0);
-    present_[oldest] = false;
-    add(oldest, -1);
+    set(place_of(0), false);
     --count_;
   }
   append(line);
@@ -51,8 +69,7 @@ std::uint64_t LruStack::reuse(std::size_t rank) {
   const std::size_t place = place_of(rank);
   const std::uint64_t line = lines_[place];
   if (rank + 1 == count_) return line;
-  present_[place] = false;
-  add(place, -1);
+  set(place, false);
   --count_;
   append(line);
   return line;
@@ -61,14 +78,11 @@ std::uint64_t LruStack::reuse(std::size_t rank) {
 void LruStack::compact() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < end_; ++i)
-    if (present_[i]) lines_[kept++] = lines_[i];
-  end_ = kept;
-  std::fill(present_.begin(), present_.end(), false);
+    if ((present_[i / kWordBits] >> i % kWordBits & 1) != 0) lines_[kept++] = lines_[i];
+  end_ = 0;
+  std::fill(present_.begin(), present_.end(), 0);
   std::fill(sums_.begin(), sums_.end(), 0);
-  for (std::size_t i = 0; i < kept; ++i) {
-    present_[i] = true;
-    add(i, 1);
-  }
+  while (end_ < kept) set(end_++, true);
 }
 
 Survival survival(const std::array<std::uint64_t, kCacheSizes>& bytes, std::uint64_t requested,

@@ -36,14 +36,14 @@ class LruStack {
 
  private:
   void append(std::uint64_t line);
-  void add(std::size_t position, std::int32_t value);
+  void set(std::size_t position, bool present);
   std::size_t place_of(std::size_t rank) const;  ///< position of the rank-th present line from the oldest
   void compact();
 
   std::size_t lines_max_, count_ = 0, end_ = 0;
   std::vector<std::uint64_t> lines_;
-  std::vector<bool> present_;
-  std::vector<std::int32_t> sums_;
+  std::vector<std::uint64_t> present_;  ///< a bit a position
+  std::vector<std::int32_t> sums_;      ///< of the bits of each word, as a tree (Fenwick 1994)
 };
 
 /// The part of requests beyond each size, of the part `reached` of all requests that a cache before it let
