@@ -337,6 +337,10 @@ class Builder {
       pass.sampled = targets_;
     u->depth_slot = static_cast<int>(pass.sampled.size());
     pass.sampled.push_back(depth_);
+    if (o_.diffuse == DiffuseFilter::samples) {
+      u->normal_slot = static_cast<int>(pass.sampled.size());
+      pass.sampled.push_back(normal_);
+    }
     if (layout_.index.counts_samples && code_bits_ > 0) {
       u->code_slot = static_cast<int>(pass.sampled.size());
       pass.sampled.push_back(codes_);
@@ -410,9 +414,11 @@ constexpr ParameterInfo kParameters[] = {
     {"t", 0.02, 0, 1, "distance that keeps aggregates apart"},
     {"ndf", 0, 0, 2, "distribution of normals", "toksvig|lean|sggx"},
     {"brdf", 0, 0, 1, "specular reflection", "blinn_phong|ggx"},
-    {"diffuse_filter", 1, 0, 2,
-     "diffuse light over the normals: none, by the lobe that holds the gloss too, or by geometry alone",
-     "off|folded|geometric"},
+    {"diffuse_filter", 3, 0, 3,
+     "diffuse light over the normals: none, by the lobe that holds the gloss too, by a mean of unit normals "
+     "beside "
+     "it, or by the samples' normals of the first pass",
+     "off|folded|geometric|samples"},
     {"gloss", 0, 0, 1, "folded into the normals' lobe, or stored beside it", "folded|separate"},
     {"k_mode", 0, 0, 1, "k as given, or at least footprint_px pixels", "world|footprint"},
     {"footprint_px", 8, 1, 64, "with k_mode=footprint"},

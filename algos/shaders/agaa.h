@@ -11,7 +11,7 @@
 namespace hwsim::algos {
 
 enum class Ndf { toksvig, lean, sggx };
-enum class DiffuseFilter { off, folded, geometric };
+enum class DiffuseFilter { off, folded, geometric, samples };
 
 /// The center rays of pixels: at view depth d pixel (x, y) sees, relative to the eye,
 ///   origin + x * origin_per_x + y * origin_per_y + d * (first + x * per_x + y * per_y).
@@ -95,7 +95,7 @@ struct ShadeUniforms {
   glm::mat4 eye_from_clip{1.0f};  ///< to world axes around the eye
   glm::vec3 background{0.0f};
   int height = 1, aggregates = 2;
-  int depth_slot = 3, code_slot = 4;  ///< image slots; the targets come first
+  int depth_slot = 3, code_slot = 4, normal_slot = 5;  ///< image slots; the targets come first
   std::array<pipeline::SamplePosition, 32> positions{};
   DiffuseFilter diffuse = DiffuseFilter::folded;
   bool separate_gloss = false, light_variance = false;

@@ -25,7 +25,9 @@ enum ShadeBlock : int {
   kTapBlock = 10,
   kNormalBlock = 11,
   kNormalDotBlock = 12,
-  kFilterBlock = 13
+  kFilterBlock = 13,
+  kSampleNormalsBlock = 14,
+  kSampleNormalBlock = 15
 };
 
 /// Lights one aggregate of every pixel.
@@ -147,6 +149,22 @@ class AggregateLight {
       surface_.normal = normalize(r.normal);
       set_gloss(s * factor);
     });
+    s_.uniform_branch(kSampleNormalsBlock, u_.diffuse == DiffuseFilter::samples,
+                      [&]() HWY_ATTR { diffuse_length_ = mean_normal_length(r); });
+  }
+
+  /// Length of the mean of the samples' normals: what geometry alone spreads them.
+  F mean_normal_length(const AggregateRecord<F, I>& r) {
+    const I x = s_.pixel_x(), y = s_.pixel_y();
+    Vec3<F> sum = {F(0.0f), F(0.0f), F(0.0f)};
+    F count(0.0f);
+    s_.loop(kSampleNormalBlock, u_.aggregate.samples, mask_, [&](int i) HWY_ATTR {
+      const Vec4<F> code = s_.load_image(u_.normal_slot, x, y, I(i));
+      const F one = select(has_sample(r, x, y, i), F(1.0f), F(0.0f));
+      sum = sum + decode_pixel_normal(code.x, code.y) * one;
+      count = count + one;
+    });
+    return min(sqrt(dot(sum, sum)) / max(count, F(1.0f)), F(1.0f - 1.0f / 65535.0f));
   }
 
   void set_gloss(F exponent) {

@@ -66,6 +66,28 @@ TEST(AgaaMemory, LobesHaveTheirSizes) {
 
 // ---- 4.13 ----
 
+// Two planes at right angles in one aggregate, of matte and of shiny material. Pure Lambert light of a lobe
+// is wider the further apart the normals are, and nothing else: the first pass's normals of the samples tell
+// the same spread as a mean of unit normals that is stored, however rough the material is.
+TEST(Agaa, SamplesNormalsFilterDiffuseLightAsStoredOnesDo) {
+  for (const float roughness : {0.3f, 0.9f}) {
+    // A roof whose ridge runs through a column of pixels.
+    pipeline::Scene scene =
+        patches({{-5, 0.02f, -4.518f, {0.7f, 0.4f, 0.2f}, 0.9f}, {0.02f, 5, 0, {0.2f, 0.4f, 0.7f}, -0.9f}});
+    for (pipeline::Material& m : scene.materials) m.roughness = roughness;
+    const auto shared = share(std::move(scene));
+    const auto image = [&](const char* filter) {
+      return render({shared, std::string("agaa:c=1,diffuse_filter=") + filter}).color;
+    };
+    const pipeline::Image stored = image("geometric"), samples = image("samples");
+    EXPECT_LT(largest_difference(stored, samples), 0.008f) << roughness;  // two steps of 8 bits
+    EXPECT_GT(largest_difference(stored, image("off")), 0.02f) << roughness;
+  }
+  EXPECT_GT(largest_difference(render({share(patches({{-5, 5, 0}})), "agaa:diffuse_filter=folded"}).color,
+                               render({share(patches({{-5, 5, 0}})), "agaa"}).color),
+            0.01f);
+}
+
 TEST(Agaa, OnePlaneIsOneAggregateAndOneFragmentsShading) {
   const auto scene = share(patches({{-5, 5, 0, {0.7f, 0.4f, 0.2f}}}));
   const Shot run{scene, "agaa:k_mode=footprint,diffuse_filter=off,gloss=folded"};
