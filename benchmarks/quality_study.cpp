@@ -29,25 +29,42 @@ namespace hwsim::benchmarks {
 namespace {
 using pipeline::Image;
 
+/// Selective supersampling wherever a highlight is, at any cost, over the frame's other triangles.
+constexpr const char* kPoints =
+    "sss_cs:mode=or,theta_c=0.5,hl_px=16,rho=64,k_max=256,border_frac=0,rest=others";
+constexpr const char* kLists =
+    "sss_ppll:mode=or,theta_c=0.5,hl_px=16,m=8,list_cap=64,capacity_nodes=16000000,rest=others";
+
 /// Of the tables of errors, and of those of flicker, where none is asked for.
-constexpr const char* kCompared[] = {
-    "none",         "msaa4x",         "msaa8x",   "ssaa4x",
-    "ssaa16x",      "ssaa64x",        "deferred", "deferred_simple_complex",
-    "sbaa_top:n=4", "sbaa_merge:n=4", "agaa:c=2", "agaa:c=2,diffuse_filter=geometric",
-    "sss_gs",       "sss_cs",         "sss_ppll", "wire_aa+msaa4x",
-    "fxaa",         "axaa",           "smaa",     "cmaa",
-    "mlaa"};
-constexpr const char* kWatched[] = {"none",
-                                    "msaa8x",
-                                    "ssaa64x",
-                                    "deferred_simple_complex",
-                                    "sbaa_top:n=4",
-                                    "agaa:c=2,diffuse_filter=geometric",
-                                    "sss_cs",
-                                    "sss_ppll",
-                                    "wire_aa+msaa4x",
-                                    "fxaa",
-                                    "smaa"};
+constexpr const char* kCompared[] = {"none",
+                                     "msaa4x",
+                                     "msaa8x",
+                                     "ssaa4x",
+                                     "ssaa16x",
+                                     "ssaa64x",
+                                     "deferred",
+                                     "deferred_simple_complex",
+                                     "sbaa_top:n=4",
+                                     "sbaa_merge:n=4",
+                                     "agaa:c=2",
+                                     "agaa:c=2,diffuse_filter=folded",
+                                     "agaa:c=2,diffuse_filter=geometric",
+                                     "csaa:mode=16x",
+                                     "eqaa:mode=8f16x",
+                                     "sss_gs",
+                                     "sss_cs",
+                                     "sss_ppll",
+                                     kPoints,
+                                     kLists,
+                                     "wire_aa+msaa4x",
+                                     "fxaa",
+                                     "axaa",
+                                     "smaa",
+                                     "cmaa",
+                                     "mlaa"};
+constexpr const char* kWatched[] = {"none",         "msaa8x",         "ssaa64x", "deferred_simple_complex",
+                                    "sbaa_top:n=4", "agaa:c=2",       "sss_cs",  "sss_ppll",
+                                    kLists,         "wire_aa+msaa4x", "fxaa",    "smaa"};
 
 struct Study {
   int width_px = 480, height_px = 270;

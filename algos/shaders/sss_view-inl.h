@@ -66,7 +66,8 @@ struct SssTriangle {
   F facing;  ///< -1: the back of a double-sided material
   F theta;   ///< largest angle between two normals
   F cos_theta;
-  F highlight_px;       ///< width of a highlight on it
+  F highlight_px;       ///< width of a highlight on it, where it is thinnest
+  F finer;              ///< samples for each one that a pixel-wide highlight needs
   F exponent;           ///< Phong's
   Vec2<F> depth_slope;  ///< change of depth for a pixel
   F depth_bias;         ///< by which samples come forward
@@ -126,19 +127,20 @@ F lobe_width(F exponent) {
   return F(2.0f) * sqrt(F(2.0f) * away) * (F(1.0f) + away * F(0.0833333f));
 }
 
-/// Radians for a pixel by which the normal turns, in the direction on the screen in which it turns most: the
-/// larger singular value of its derivatives. (Techniques 5.1 divides the longest edge by the angle between
-/// normals, which is this for triangles about as long as wide. On a bar's long ones the normal turns across
-/// them, and their length says nothing of how thin the highlight is.)
+/// Radians for a pixel by which the normal turns, in the direction on the screen in which it turns most, and
+/// across it: the singular values of its derivatives. (Techniques 5.1 divides the longest edge by the angle
+/// between normals, which is this for triangles about as long as wide. On a bar's long ones the normal turns
+/// across them, and their length says nothing of how thin the highlight is.)
 template <class F>
-F fastest_turn(const SssCorner<F> (&c)[3], F area2) {
+Vec2<F> normal_turns(const SssCorner<F> (&c)[3], F area2) {
   const Vec2<F> x = gradient(c, area2, c[0].normal.x, c[1].normal.x, c[2].normal.x);
   const Vec2<F> y = gradient(c, area2, c[0].normal.y, c[1].normal.y, c[2].normal.y);
   const Vec2<F> z = gradient(c, area2, c[0].normal.z, c[1].normal.z, c[2].normal.z);
   const F across = x.x * x.x + y.x * y.x + z.x * z.x, down = x.y * x.y + y.y * y.y + z.y * z.y;
   const F both = x.x * x.y + y.x * y.y + z.x * z.y;
   const F half = (across - down) * F(0.5f);
-  return sqrt((across + down) * F(0.5f) + sqrt(half * half + both * both));
+  const F middle = (across + down) * F(0.5f), apart = sqrt(half * half + both * both);
+  return {sqrt(middle + apart), sqrt(max(middle - apart, F(0.0f)))};
 }
 
 template <class S, class F>
@@ -153,7 +155,11 @@ SssTriangle<F> measure_triangle(S& s, const SssUniforms& u, float winding, SssCo
   t.cos_theta = F(1.0f) - chord2 * F(0.5f);
   t.exponent = F(material_exponent(s.material()) * u.exponent_scale);
   // A reflection turns twice as fast as the normal.
-  t.highlight_px = lobe_width(t.exponent) * F(0.5f) / max(fastest_turn(c, t.area2), F(1e-6f));
+  const Vec2<F> turns = normal_turns(c, t.area2);
+  const F lobe = F(2.0f) / lobe_width(t.exponent);
+  t.highlight_px = F(1.0f) / max(turns.x * lobe, F(1e-6f));
+  // On a bar the highlight is thin across, and long along it: samples are closer in one direction only.
+  t.finer = min(max(turns.x * lobe, F(1.0f)), F(1e3f)) * min(max(turns.y * lobe, F(1.0f)), F(1e3f));
   t.depth_slope = gradient(c, t.area2, c[0].z, c[1].z, c[2].z);
   t.depth_bias = F(u.depth_bias) + F(u.depth_slope) * max(abs(t.depth_slope.x), abs(t.depth_slope.y));
   return t;
@@ -398,8 +404,9 @@ template <class F, class I>
 SssPattern<F> make_pattern(const SssUniforms& u, const SssTriangle<F>& t, const SssCorner<F> (&c)[3],
                            I number) {
   SssPattern<F> p;
-  const F finer = max(F(1.0f), F(1.0f) / max(t.highlight_px, F(1e-3f)));
-  const F wanted = ceiling(F(u.samples_per_px) * t.area * finer * finer);
+  // No closer than in 64x supersampling, which the paper's budget aims at.
+  const float most = std::max(u.samples_per_px, 64.0f);
+  const F wanted = ceiling(min(F(u.samples_per_px) * t.finer, F(most)) * t.area);
   p.count = min(max(wanted, F(u.samples_min)), F(u.samples_max));
   p.border = ceiling(F(u.border_share) * p.count);
   p.weight = min(F(1.0f), t.area / p.count);

@@ -195,6 +195,22 @@ TEST(Agaa, CodesNameExistingAggregatesAndFollowTheDistance) {
   }
 }
 
+// 4.14: with a large k surfaces join whatever lies between them, if their normals agree; with a small one
+// each step in depth is two.
+TEST(Agaa, KDecidesWhetherDistanceKeepsSurfacesApart) {
+  const auto aggregates = [](const std::vector<Patch>& list, const char* k, const char* more = "") {
+    const Shot shot{share(patches(list)), std::string("agaa:c=2,k=") + k + more};
+    return total(render(shot).trace).technique.agaa_aggregates;
+  };
+  const std::vector<Patch> parallel = {{-5, 0.02f, 0}, {0.02f, 5, -0.5f}};
+  const std::vector<Patch> crossing = {{-5, 0.02f, -4.518f, glm::vec3(0.5f), 0.9f},
+                                       {0.02f, 5, 0, glm::vec3(0.5f), -0.9f}};
+  const std::uint64_t covered = aggregates(parallel, "10", ",t=1");
+  EXPECT_EQ(aggregates(parallel, "10"), covered);
+  EXPECT_EQ(aggregates(parallel, "1"), covered + kHeight);  // a column of pixels has both
+  EXPECT_EQ(aggregates(crossing, "10"), aggregates(crossing, "10", ",t=1") + kHeight);
+}
+
 TEST(Agaa, AMeshDrawnTwiceIsTheMeshDrawnOnce) {
   const Patch a{-0.8f, 0.33f, 0, {0.8f, 0.3f, 0.1f}, 0.7f}, b{-0.2f, 0.9f, 0.1f, {0.1f, 0.6f, 0.9f}, -0.4f};
   const auto once = share(patches({a, b})), twice = share(patches({a, b, a, b, a}));

@@ -434,6 +434,69 @@ TEST(Sss, AllocatesWhatThePaperAndItsArithmeticSay) {
   EXPECT_GT(extra("sss_ppll:budget_mib=27"), budget - 16);
 }
 
+// Exponent 0, normals that do not differ, triangles without area and seen edge on: each divides by it.
+TEST(Sss, DegenerateTrianglesStayNumbers) {
+  Mesh mesh;
+  add_cylinder(mesh, 0.0f, 0.2f, 12, 8);
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (const glm::vec3 p : {glm::vec3(0, 0, 0.5f), glm::vec3(0.4f, 0, 0.5f), glm::vec3(0.8f, 0, 0.5f),
+                            glm::vec3(0, 0.3f, 0.5f), glm::vec3(0, 0.3f, -0.5f), glm::vec3(0, 0.9f, 0.1f)}) {
+    mesh.positions.push_back(p);
+    mesh.normals.push_back(glm::normalize(glm::vec3(0.2f * p.x, 0.4f * p.z, 1)));
+  }
+  mesh.indices.insert(mesh.indices.end(), {first, first + 1, first + 2, first + 3, first + 4, first + 5,  //
+                                           first, first, first});
+  Scene scene = empty_scene();
+  scene.materials[0].roughness = 1.0f;            // the exponent is 2 / 1 - 2
+  scene.materials[0].emissive = glm::vec3(0.1f);  // what is not a number is stored as 0
+  scene.background = glm::vec3(0.25f);
+  scene.materials[0].double_sided = true;
+  const auto rough = finish(scene, mesh);
+  for (glm::vec3& n : mesh.normals) n = glm::vec3(0, 0, 1);
+  const auto flat = finish(scene, mesh);
+  for (const std::string variant : kVariants)
+    for (const std::string rest : {"frame", "others"})
+      for (const std::string exit : {"on", "off"}) {
+        const std::string text =
+            variant + ":theta_c=0.01,mode=or,tri_px=1000,hl_px=1000,rest=" + rest + ",early_exit=" + exit;
+        for (const auto& s : {rough, flat}) {
+          const Image image = run(s, text).color;
+          for (const glm::vec4& p : image.pixels) ASSERT_GT(p.x, 0.0f) << text;
+          EXPECT_NEAR(image.at(0, 0).x, 0.25f, 0.005f) << text;
+        }
+      }
+}
+
+TEST(Sss, LongListsAreCutAndCounted) {
+  const auto scene = rods();
+  const std::string all = "sss_ppll:mode=or,early_exit=off,list_cap=";
+  const TechniqueCounters whole = counters(run(scene, all + "64")), one = counters(run(scene, all + "1"));
+  EXPECT_EQ(whole.sss_truncated_pixels, 0u);
+  const std::uint64_t longer = whole.sss_list_2_to_3_pixels + whole.sss_list_4_to_7_pixels +
+                               whole.sss_list_8_to_15_pixels + whole.sss_list_16_to_31_pixels +
+                               whole.sss_list_from_32_pixels;
+  EXPECT_GT(longer, 100u);
+  EXPECT_EQ(one.sss_truncated_pixels, longer);
+  EXPECT_EQ(one.sss_list_1_pixels, longer + whole.sss_list_1_pixels);
+}
+
+// 5.4: where the covered parts add up to the pixel, the frame below shows nothing of itself.
+TEST(Sss, FullListsLeaveNothingOfTheFrame) {
+  Mesh mesh;
+  add_cylinder(mesh, 0.0f, 0.9f, 48, 40);
+  const auto scene = finish(empty_scene(), std::move(mesh));
+  const std::string all = "sss_ppll:mode=or,tri_px=1000,early_exit=off,rest=";
+  const Image frame = run(scene, all + "frame").color, others = run(scene, all + "others").color;
+  int shaded = 0;
+  for (int y = kHeight / 2 - 12; y < kHeight / 2 + 12; ++y)  // the cylinder reaches over 18 rows on each side
+    for (int x = 0; x < kWidth; ++x) {
+      shaded += frame.at(x, y).x > 0.0f ? 1 : 0;
+      for (int c = 0; c < 3; ++c) ASSERT_EQ(frame.at(x, y)[c], others.at(x, y)[c]) << x << ", " << y;
+    }
+  EXPECT_GT(shaded, 1000);
+  EXPECT_GT(largest_difference(frame, run(scene, "msaa8x").color), 1.0f / 255.0f);
+}
+
 TEST(Sss, ConservativeRasterNeedsTheGpu) {
   try {
     emulate(graph_of(rods(), "sss_ppll:conservative=raster"), GpuFeatures{}, FunctionalConfig{}, {});
