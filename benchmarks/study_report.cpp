@@ -76,7 +76,7 @@ void write_csv(const std::vector<StudyRow>& rows, std::ostream& out) {
   for (const StudyRow& r : rows)
     out << r.scene << ",\"" << r.technique << "\"," << r.gpu << ',' << r.engine << ',' << r.time_ms << ','
         << r.overhead_ms << ',' << r.dram_mb << ',' << r.wall_ms << ',' << r.time_error_pct << ','
-        << r.byte_error_pct << ',' << r.times_as_fast << '\n';
+        << r.byte_error_pct << ',' << r.times_as_fast << ',' << r.fragments << '\n';
 }
 
 void write_table(const std::vector<StudyRow>& rows, std::ostream& out) {
