@@ -8,7 +8,7 @@ template <class T>
 struct ChunkCost {
   std::array<T, kUnitCount> ns;
   StreamBytesOf<T> dram;
-  double packets = 1.0, subgroups = 0.0;
+  double packets = 1.0;
   T shader_latency_ns{0.0};  ///< from a subgroup's dispatch to its end
   T core_fills{0.0};         ///< how often its subgroups fill the cores
   T line_fills{0.0};         ///< how often its lines fill what a fixed-function unit has on their way
@@ -222,7 +222,6 @@ template <class T>
 void set_waiting(const PassCounters& c, const PassWork& pass, const ChunkTraffic<T>& traffic,
                  const GpuRates<T>& r, ChunkCost<T>& cost) {
   const double subgroups = subgroups_of(c, r.subgroup_size);
-  cost.subgroups = subgroups;
   if (subgroups > 0.0) {
     cost.shader_latency_ns = subgroup_life_ns(c, traffic, shader_pipes(c, r).fullest(), subgroups, r);
     cost.core_fills = subgroups / (resident_subgroups(c, pass, r) * r.shader_cores);

@@ -70,40 +70,32 @@ void roofline_time(PassTime<T>& time, const GpuRates<T>& rates) {
   for (std::size_t u = 0; u < kUnitCount; ++u) time.stack_ns[u] = time.time_ns * powers[u] / sum;
 }
 
-/// What a place holds at the end of a chunk: the last packets that fill it once, and the subgroups among
-/// them.
+/// For each chunk, the packets up to its end that fill a place once; more than there are while it is not
+/// full. Those that put nothing there count as packets all the same: they pass between the others. Where
+/// nothing has come yet, nothing is held: depth alone passes by the cores, and waits for its lines.
 template <class T>
-struct Held {
-  T packets, subgroups;
-};
-
-/// For each chunk; more packets than there are while the place is not full. Those that put nothing there
-/// count all the same: they pass between the others.
-template <class T>
-std::vector<Held<T>> held_by(const std::vector<ChunkCost<T>>& costs, T ChunkCost<T>::*fills) {
-  std::vector<Held<T>> held;
-  held.reserve(costs.size());
+std::vector<T> packets_of_a_fill(const std::vector<ChunkCost<T>>& costs, T ChunkCost<T>::*fills) {
+  std::vector<T> packets;
+  packets.reserve(costs.size());
   T inside(0.0);  // fills of chunks [first, k]
-  double packets = 0.0, subgroups = 0.0;
+  double inside_packets = 0.0;
   std::size_t first = 0;
   for (std::size_t k = 0; k < costs.size(); ++k) {
     inside += costs[k].*fills;
-    packets += costs[k].packets;
-    subgroups += costs[k].subgroups;
+    inside_packets += costs[k].packets;
     for (; !(inside - costs[first].*fills < T(1.0)) && first < k; ++first) {
       inside -= costs[first].*fills;
-      packets -= costs[first].packets;
-      subgroups -= costs[first].subgroups;
+      inside_packets -= costs[first].packets;
     }
     const T over = inside - T(1.0);
-    if (over < T(0.0)) {
-      held.push_back({T(2.0 * packets + 1.0), T(subgroups)});
-    } else {
-      const T left = over / (costs[first].*fills);  // part of the first chunk
-      held.push_back({packets - left * costs[first].packets, subgroups - left * costs[first].subgroups});
-    }
+    if (!(inside > T(0.0)))
+      packets.push_back(T(0.0));
+    else if (over < T(0.0))
+      packets.push_back(T(2.0 * inside_packets + 1.0));
+    else
+      packets.push_back(inside_packets - over / (costs[first].*fills) * costs[first].packets);
   }
-  return held;
+  return packets;
 }
 
 /// The queue engine's input: units without work in this pass are bypassed.
@@ -111,19 +103,16 @@ template <class T>
 FlowTable<T> flow_table(const std::vector<ChunkCost<T>>& costs, const std::vector<std::size_t>& units,
                         const GpuRates<T>& rates) {
   FlowTable<T> table{units.size(), costs.size(), {}, {}, {}, {}};
-  const std::vector<Held<T>> resident = held_by(costs, &ChunkCost<T>::core_fills),
-                             lines_ahead = held_by(costs, &ChunkCost<T>::line_fills);
+  const std::vector<T> resident = packets_of_a_fill(costs, &ChunkCost<T>::core_fills),
+                       lines_ahead = packets_of_a_fill(costs, &ChunkCost<T>::line_fills);
   for (std::size_t k = 0; k < costs.size(); ++k) {
     const ChunkCost<T>& cost = costs[k];
     // How far a unit may run ahead of the next one that has work: the queue between them, what the cores
-    // hold, and lines on their way. Packets without subgroups pass by the cores, but their lines have to
-    // come.
+    // hold, and lines on their way.
     const auto room = [&](std::size_t unit, std::size_t next) {
       T packets(rates.queue_packets);
-      if (unit == at(Unit::shader) || unit == at(Unit::tex))
-        packets += smaller(resident[k].packets, T(resident[k].subgroups + lines_ahead[k].packets));
-      else if (next >= at(Unit::l2))
-        packets += lines_ahead[k].packets;
+      if (unit == at(Unit::shader) || unit == at(Unit::tex)) packets += resident[k];
+      if (next >= at(Unit::l2)) packets += lines_ahead[k];
       return packets;
     };
     table.packets.push_back(cost.packets);
