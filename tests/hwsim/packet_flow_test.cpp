@@ -6,6 +6,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "hwsim/sample_gpu.h"
+#include "hwsim/timing/time_pass.h"
+
 namespace hwsim {
 namespace {
 
@@ -93,6 +96,34 @@ TEST(PacketFlow, ALatencyIsPaidOnceWhereEnoughPacketsAreOnTheirWay) {
 
 TEST(PacketFlow, NothingToDoTakesNoTime) {
   EXPECT_DOUBLE_EQ(PacketFlow<double>(table(3, {}, 1.0, 2.0)).run().makespan_ns, 0.0);
+}
+
+/// How far the cores may run ahead of L2 in each of two chunks of ten packets.
+std::vector<double> room_of_cores(double fills_of_first, double fills_of_second) {
+  std::vector<ChunkCost<double>> costs(2);
+  for (ChunkCost<double>& cost : costs) {
+    cost.packets = 10.0;
+    cost.line_fills = 2.0;  // five packets' lines are on their way at most
+  }
+  costs[0].core_fills = fills_of_first;
+  costs[1].core_fills = fills_of_second;
+  GpuRates<double> rates = derive_rates<double>(test::sample_gpu());
+  rates.queue_packets = 4.0;
+  const auto flow = flow_table(costs, {at(Unit::shader), at(Unit::l2)}, rates);
+  return {flow.room_packets[0], flow.room_packets[2]};
+}
+
+// Depth alone: nothing stays in the cores, so that the queue and the lines on their way are all the room.
+TEST(Room, PacketsWithoutSubgroupsWaitForTheirLines) {
+  EXPECT_EQ(room_of_cores(0.0, 0.0), (std::vector<double>{4.0 + 5.0, 4.0 + 5.0}));
+}
+
+// Five packets fill the cores.
+TEST(Room, PacketsInTheCoresAddToIt) { EXPECT_EQ(room_of_cores(2.0, 2.0)[1], 4.0 + 5.0 + 5.0); }
+
+// A few subgroups among many packets: those without pass between them, and all of them have room.
+TEST(Room, FewSubgroupsAmongManyPacketsHoldNoneBack) {
+  EXPECT_EQ(room_of_cores(0.25, 0.25), (std::vector<double>{4.0 + 5.0 + 21.0, 4.0 + 5.0 + 41.0}));
 }
 
 }  // namespace
