@@ -31,6 +31,7 @@ struct Options {
   int emulate, accumulate;
   bool centroid, dither;
   int plane_path;
+  bool covariance;
 };
 
 Options read_options(const Parameters& parameters) {
@@ -60,7 +61,8 @@ Options read_options(const Parameters& parameters) {
           index("accumulate"),
           index("centroid") != 0,
           index("a2c_dither") != 0,
-          index("plane_path")};
+          index("plane_path"),
+          index("shadow_axis") != 0};
 }
 
 /// Builds the frame pass by pass.
@@ -326,6 +328,10 @@ class Builder {
     u->diffuse = o_.diffuse;
     u->separate_gloss = o_.separate_gloss;
     u->light_variance = o_.light_variance;
+    u->covariance = o_.covariance;
+    // The rows of view z and w hold no x and y: projections keep the planes of equal depth.
+    const glm::mat4& m = view_from_clip_;
+    u->depth_of_z = {-m[3][2], -m[2][2], m[3][3], m[2][3]};
     set_taps(*u);
     set_disk(*u);
     const ImageId output = add_output(graph_);
@@ -440,6 +446,9 @@ constexpr ParameterInfo kParameters[] = {
      "native samples: depth tiles that are compressed to few planes take those for aggregates",
      "auto|on|off"},
     {"a2c_dither", 1, 0, 1, "alpha to coverage rounds by 2x2 pixels", "off|on"},
+    {"shadow_axis", 0, 0, 1,
+     "along which shadows are filtered: the depths of an aggregate's samples, or their places",
+     "depth|places"},
 };
 
 constexpr TechniqueInfo kTechniques[] = {

@@ -126,6 +126,9 @@ void add_classify_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer
   bind_gbuffer(pass, parts, g);
 }
 
+/// Shaders cannot write single samples of a multisampled image (D3D11, GL): the tiles write a buffer of
+/// samples, as in Lauritzen's program, and a full-screen pass at sample rate brings it to the render target.
+/// With layout=gb_lauritzen that makes the 40 bytes a sample of SBAA's reference (techniques 3.6 b).
 void add_tile_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
                    std::shared_ptr<const void> uniforms) {
   Pass& pass = graph.add_pass("light_tiles", PassKind::compute);
@@ -133,9 +136,18 @@ void add_tile_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
   pass.compute = &program;
   pass.groups_x = (graph.width() + program.group_width - 1) / program.group_width;
   pass.groups_y = (graph.height() + program.group_height - 1) / program.group_height;
-  pass.targets = {g.lit};
+  const ImageId samples =
+      graph.add_image({"lit_samples", g.layout->lit, graph.width(), graph.height(), g.samples});
+  pass.targets = {samples};
   pass.uniforms = std::move(uniforms);
   bind_gbuffer(pass, parts, g);
+  Pass& copy = graph.add_pass("copy_lit", PassKind::full_screen);
+  copy.samples = g.samples;
+  copy.color = {g.lit};
+  copy.sampled = {samples};
+  copy.fragment = &copy_samples_program();
+  copy.uniforms = std::make_shared<int>();  // of which the program reads nothing
+  copy.state.raster.sample_rate = true;
 }
 
 void finish(FrameGraph& graph, const FrameParts& parts, const GBuffer& g) {

@@ -80,7 +80,7 @@ void add_point_lights(const FrameRequest& request, int count, LightingUniforms& 
   if (count <= 0) return;
   const SceneStats s = stats(*request.scene);
   const glm::vec3 extent = s.bounds_max - s.bounds_min;
-  const float range = 0.15f * glm::length(extent);
+  const float range = static_cast<float>(request.light_range) * glm::length(extent);
   Pcg random;
   if (lighting.point_count == 0) lighting.points.clear();
   for (int i = 0; i < count; ++i) {

@@ -36,8 +36,9 @@ struct WireOptions {
 struct FrameRequest {
   std::shared_ptr<const pipeline::Scene> scene;
   int width_px = 1280, height_px = 720;
-  int camera = 0;        ///< index into Scene::cameras
-  int point_lights = 0;  ///< 0..1024 seeded point lights added to those of the scene
+  int camera = 0;             ///< index into Scene::cameras
+  int point_lights = 0;       ///< 0..1024 seeded point lights added to those of the scene
+  double light_range = 0.15;  ///< of the lights added: over the scene's diagonal
   LightProfile lights = LightProfile::scene;
   bool shadows = true;  ///< a shadow map for the scene's shadow caster
   int shadow_map_px = 2048;

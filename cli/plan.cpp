@@ -22,6 +22,7 @@ namespace {
 
 struct SceneSettings {
   int point_lights = 0;
+  double light_range = 0.15;
   std::string lights = "scene";
   bool shadows = true;
   int shadow_map_px = 2048;
@@ -30,6 +31,9 @@ template <class Visitor>
 void describe(Visitor& v, SceneSettings& s) {
   v.key({"point_lights", 0, 1024, kNoFlags, "seeded point lights added to those of the scene"},
         s.point_lights);
+  v.key({"light_range", 1e-3, 100, kNoFlags,
+         "reach of the lights that are added (also by lights=complex), over the scene's diagonal"},
+        s.light_range);
   v.key({"lights", 0, 0, kNoFlags, "scene, simple (one light) or complex (16 lights)"}, s.lights);
   v.key({"shadows", 0, 1, kNoFlags, "a shadow map for the light that casts shadows"}, s.shadows);
   v.key({"shadow_map_px", 16, kMaxSidePx, kNoFlags, "side of the shadow map"}, s.shadow_map_px);
@@ -89,8 +93,8 @@ bool is_scene_file(const std::string& scene) {
 ViewPlan plan_view(const ViewOptions& options, const std::vector<Assignment>& sets, const ViewPlan& start,
                    std::vector<Diagnostic>& problems) {
   ViewPlan plan = start;
-  SceneSettings settings{start.point_lights, std::string(light_profile_name(start.lights)), start.shadows,
-                         start.shadow_map_px};
+  SceneSettings settings{start.point_lights, start.light_range, std::string(light_profile_name(start.lights)),
+                         start.shadows, start.shadow_map_px};
   const std::vector<Key> keys = keys_of(settings);
   std::vector<Assignment> own, generator;
   for (const Assignment& set : sets) {
@@ -102,6 +106,7 @@ ViewPlan plan_view(const ViewOptions& options, const std::vector<Assignment>& se
   apply_settings("scene", keys, own, problems);
   plan.scene = with_parameters(plan.scene, generator);
   plan.point_lights = options.point_lights.value_or(settings.point_lights);
+  plan.light_range = settings.light_range;
   if (const auto profile = light_profile_from_name(settings.lights))
     plan.lights = *profile;
   else

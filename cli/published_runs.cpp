@@ -33,6 +33,7 @@ class RunTraces {
     view.camera = spec.camera;
     view.resolution = {spec.width_px, spec.height_px};
     view.point_lights = spec.point_lights;
+    view.light_range = spec.light_range;
     view.shadows = spec.shadows;
     view.lights = light_profile_from_name(spec.lights).value_or(algos::LightProfile::scene);
     const algos::TechniqueChoice technique = algos::parse_technique(spec.technique);

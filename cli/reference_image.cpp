@@ -16,7 +16,8 @@ namespace {
 std::string reference_key(const SceneView& scene, int samples) {
   const ViewPlan& view = scene.plan();
   return fmt::format("{}|{}|{}|{}x{}|{}|{}|{}|{}", algos::kReferenceVersion, scene.summary().content_hash,
-                     scene.camera(), view.resolution.width_px, view.resolution.height_px, view.point_lights,
+                     scene.camera(), view.resolution.width_px, view.resolution.height_px,
+                     fmt::format("{} {}", view.point_lights, view.light_range),
                      light_profile_name(view.lights), view.shadows, samples);
 }
 

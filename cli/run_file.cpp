@@ -136,6 +136,11 @@ RunFile read_run_file(const std::string& path) {
   reader.take_count("height_px", file.view.resolution.height_px, 1, kMaxSidePx);
   reader.take_count("shadow_map_px", file.view.shadow_map_px, 16, kMaxSidePx);
   reader.take_count("point_lights", file.view.point_lights, 0, 1024);
+  reader.take("light_range", file.view.light_range, "number");
+  if (!(file.view.light_range >= 1e-3 && file.view.light_range <= 100.0))
+    reader.add("C014",
+               fmt::format("`light_range` is {}, must be between 0.001 and 100", file.view.light_range),
+               table.source());
   std::string lights = "scene";
   reader.take("lights", lights, "text");
   if (const auto profile = light_profile_from_name(lights))
@@ -170,15 +175,16 @@ std::string run_file_text(const RunPlan& plan, const algos::TechniqueChoice& tec
       view.scene.ends_with(".gltf") || view.scene.ends_with(".glb") || is_image_file(view.scene);
   return fmt::format(
       "schema = {}\nkind = \"run\"\nscene = {}\ntechnique = {}\ngpu = {}\nengine = {}\ndetailed_sample = {}\n"
-      "width_px = {}\nheight_px = {}\ncamera = {}\npoint_lights = {}\nlights = {}\nshadows = "
+      "width_px = {}\nheight_px = {}\ncamera = {}\npoint_lights = {}\nlight_range = {}\nlights = {}\nshadows "
+      "= "
       "{}\nshadow_map_px = {}\n"
       "emulator_skip = {}\nreference_samples = {}\n",
       kSchema, quoted(is_path ? fs::absolute(view.scene).lexically_normal().string() : view.scene),
       quoted(algos::technique_text(technique, true)), quoted(gpu_file),
       quoted(std::string(engine_name(plan.engine))), to_toml(TomlValue(plan.timing.detailed_sample_ratio)),
       view.resolution.width_px, view.resolution.height_px, quoted(view.camera), view.point_lights,
-      quoted(std::string(light_profile_name(view.lights))), view.shadows, view.shadow_map_px,
-      quoted(skip_text(plan.skip)), plan.reference_samples);
+      to_toml(TomlValue(view.light_range)), quoted(std::string(light_profile_name(view.lights))),
+      view.shadows, view.shadow_map_px, quoted(skip_text(plan.skip)), plan.reference_samples);
 }
 
 }  // namespace hwsim::cli

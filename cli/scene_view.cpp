@@ -200,6 +200,7 @@ algos::FrameRequest SceneView::frame_request() {
   request.height_px = plan_.resolution.height_px;
   request.camera = camera_;
   request.point_lights = plan_.point_lights;
+  request.light_range = plan_.light_range;
   request.lights = plan_.lights;
   request.shadows = plan_.shadows;
   request.shadow_map_px = plan_.shadow_map_px;

@@ -109,11 +109,11 @@ std::string image_path(const std::string& key) { return cache_path(CacheFolder::
 std::string TraceStore::work_text(const SceneView& scene, const algos::TechniqueChoice& technique,
                                   const GpuConfig& gpu, const FrameNeeds& needs) {
   const ViewPlan& view = scene.plan();
-  return fmt::format("scene {} camera {} {}x{} lights {} {} shadows {} {}|{}|gpu {}|skip {}",
+  return fmt::format("scene {} camera {} {}x{} lights {} {} {} shadows {} {}|{}|gpu {}|skip {}",
                      scene.summary().content_hash, scene.camera(), view.resolution.width_px,
-                     view.resolution.height_px, view.point_lights, light_profile_name(view.lights),
-                     view.shadows, view.shadow_map_px, technique_text(technique, true), functional_hash(gpu),
-                     skip_text(needs.skip));
+                     view.resolution.height_px, view.point_lights, view.light_range,
+                     light_profile_name(view.lights), view.shadows, view.shadow_map_px,
+                     technique_text(technique, true), functional_hash(gpu), skip_text(needs.skip));
 }
 
 EmulatedFrame TraceStore::frame(SceneView& scene, const algos::TechniqueChoice& technique,

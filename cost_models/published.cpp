@@ -167,6 +167,7 @@ class Mapper {
     run.scene = scenes_.text(*scene, "stand_in");
     run.camera = scenes_.text(*scene, "camera");
     run.point_lights = static_cast<int>(number(scenes_.text(*scene, "point_lights")));
+    run.light_range = number(scenes_.text(*scene, "light_range"));
     run.lights = scenes_.text(*scene, "lights");
     run.shadows = scenes_.text(*scene, "shadows") == "yes";
     run.technique = filled(techniques_.text(*technique, "template"), row);

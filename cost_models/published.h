@@ -27,6 +27,7 @@ struct RunSpec {
   std::string gpu;
   int width_px = 0, height_px = 0;
   int point_lights = 0;          ///< added to those of the scene
+  double light_range = 0.0;      ///< of these, over the scene's diagonal
   std::string lights = "scene";  ///< or SBAA's profiles: simple, complex
   bool shadows = true;
   std::string to_string() const;

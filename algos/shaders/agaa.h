@@ -99,6 +99,8 @@ struct ShadeUniforms {
   std::array<pipeline::SamplePosition, 32> positions{};
   DiffuseFilter diffuse = DiffuseFilter::folded;
   bool separate_gloss = false, light_variance = false;
+  bool covariance = false;                       ///< of the samples' places; else of their depths alone
+  glm::vec4 depth_of_z{0.0f, 1.0f, 1.0f, 0.0f};  ///< view depth of z: (x + y z) / (z + w z)
   int shadow_taps = 4;
   std::array<float, kMaxShadowTaps> tap_position{}, tap_weight{};
   int visible_normals = 8;

@@ -83,10 +83,18 @@ F exponent_of(F length, float reference) {
   return length * F(reference) / (length + F(reference) * (F(1.0f) - length));
 }
 
-/// Mean of max(0, n.l) over a von Mises-Fisher lobe with mean length `r` around a normal at cosine `mu`. A
-/// series below kappa 2.5 (error 0.002), the fit of spherical Gaussians above (0.016); techniques 4.8.
+/// A von Mises-Fisher lobe of normals with mean length `r`, as its diffuse light needs it: what no light
+/// changes. A series below kappa 2.5 (error 0.002), the fit of spherical Gaussians above (0.016); techniques
+/// 4.8.
 template <class F>
-F vmf_diffuse(F r, F mu) {
+struct DiffuseLobe {
+  F constant, linear, square;  ///< the series, in the cosine
+  F scale, offset, root, inv_root;
+  decltype(F{} < F{}) wide, flat;
+};
+
+template <class F>
+DiffuseLobe<F> diffuse_lobe(F r) {
   const F r2 = r * r;
   const F kappa = r * (F(3.0f) - r2) / max(F(1.0f) - r2, F(1e-6f));
   const F inv = F(1.0f) / max(kappa, F(1e-3f));
@@ -96,15 +104,29 @@ F vmf_diffuse(F r, F mu) {
   const F coth = (F(1.0f) + e2) / max(F(1.0f) - e2, F(1e-3f));
   const F a1 = select(series, kappa * (F(1.0f / 3.0f) - k2 * F(1.0f / 45.0f)), coth - inv);
   const F a2 = select(series, k2 * (F(1.0f / 15.0f) - k2 * F(2.0f / 315.0f)), F(1.0f) - F(3.0f) * a1 * inv);
-  const F wide = F(0.25f) + F(0.5f) * a1 * mu + F(5.0f / 32.0f) * a2 * (F(3.0f) * mu * mu - F(1.0f));
-  const F g = F(1.0f) + F(2.0f) * e2 - inv, b = (e1 - e2) * inv - e2;
-  const F x = sqrt(max(F(1.0f) - g, F(0.0f)));
-  const F x0 = F(0.36f) * mu, x1 = x * F(1.0f / 1.44f);
-  const F n = x0 + x1, cosine = max(mu, F(0.0f));
-  const F y = select(abs(x0) <= x1, n * n / max(x, F(1e-6f)), cosine);
-  const F narrow = g * y + b;
-  const F filtered = max(select(kappa < F(2.5f), wide, narrow), F(0.0f));
-  return select(kappa < F(1e4f), filtered, cosine);
+  DiffuseLobe<F> lobe;
+  lobe.constant = F(0.25f) - F(5.0f / 32.0f) * a2;
+  lobe.linear = F(0.5f) * a1;
+  lobe.square = F(15.0f / 32.0f) * a2;
+  lobe.scale = F(1.0f) + F(2.0f) * e2 - inv;
+  lobe.offset = (e1 - e2) * inv - e2;
+  lobe.root = sqrt(max(F(1.0f) - lobe.scale, F(0.0f)));
+  lobe.inv_root = F(1.0f) / max(lobe.root, F(1e-6f));
+  lobe.wide = kappa < F(2.5f);
+  lobe.flat = !(kappa < F(1e4f));
+  return lobe;
+}
+
+/// Mean of max(0, n.l) over the lobe around a normal at cosine `mu`.
+template <class F>
+F diffuse_of(const DiffuseLobe<F>& lobe, F mu) {
+  const F cosine = max(mu, F(0.0f));
+  const F series = lobe.constant + mu * (lobe.linear + mu * lobe.square);
+  const F x0 = F(0.36f) * mu, x1 = lobe.root * F(1.0f / 1.44f);
+  const F n = x0 + x1;
+  const F y = select(abs(x0) <= x1, n * n * lobe.inv_root, cosine);
+  const F filtered = max(select(lobe.wide, series, lobe.scale * y + lobe.offset), F(0.0f));
+  return select(lobe.flat, cosine, filtered);
 }
 
 template <class F>

@@ -26,8 +26,9 @@ enum ShadeBlock : int {
   kNormalBlock = 11,
   kNormalDotBlock = 12,
   kFilterBlock = 13,
-  kSampleNormalsBlock = 14,
-  kSampleNormalBlock = 15
+  kSampleNormalBlock = 14,
+  kDepthBlock = 15,
+  kCovarianceBlock = 16
 };
 
 /// Lights one aggregate of every pixel.
@@ -39,7 +40,7 @@ class AggregateLight {
   using M = typename S::M;
 
   AggregateLight(S& s, const ShadeUniforms& u, M mask) : s_(s), u_(u), mask_(mask) {
-    frame_ = pixel_frame<F>(u.aggregate.rays, s.pixel_x(), s.pixel_y());
+    if (u.aggregate.ndf == Ndf::lean) frame_ = pixel_frame<F>(u.aggregate.rays, s.pixel_x(), s.pixel_y());
   }
 
   /// `r`: normalized means.
@@ -51,23 +52,57 @@ class AggregateLight {
     surface_.specular = decode_specular(r.luma, r.cb, r.cr);
     surface_.emissive = {r.emissive, r.emissive, r.emissive};
     find_shape(r);
+    if (u_.diffuse != DiffuseFilter::off && u_.aggregate.ndf != Ndf::sggx)
+      lobe_ = diffuse_lobe(diffuse_length_);
     return light();
   }
 
  private:
-  // Mean and main axis of the samples' positions.
+  // Mean and main axis of the samples' positions: along the pixel's ray, from the depths alone (section
+  // 3.5.3: what the paper does in practice), or of their covariance.
   void find_place(const AggregateRecord<F, I>& r) {
-    const I x = s_.pixel_x(), y = s_.pixel_y();
     if (u_.aggregate.targets.moments >= 0) {
-      const PixelRays& rays = u_.aggregate.rays;
-      const F fx = to_float(x), fy = to_float(y);
-      const Vec3<F> ray =
-          constant<F>(rays.first) + constant<F>(rays.per_x) * fx + constant<F>(rays.per_y) * fy;
-      place_ = constant<F>(rays.origin) + constant<F>(rays.origin_per_x) * fx +
-               constant<F>(rays.origin_per_y) * fy + ray * r.depth;
-      spread_ = ray * sqrt(max(r.depth2 - r.depth * r.depth, F(0.0f)));
+      place_along_ray(r.depth, r.depth2 - r.depth * r.depth);
       return;
     }
+    place_by_depths(r);
+    s_.uniform_branch(kCovarianceBlock, u_.covariance, [&]() HWY_ATTR { place_by_covariance(r); });
+  }
+
+  void place_along_ray(F mean, F variance) {
+    const PixelRays& rays = u_.aggregate.rays;
+    const F fx = to_float(s_.pixel_x()), fy = to_float(s_.pixel_y());
+    const Vec3<F> ray = constant<F>(rays.first) + constant<F>(rays.per_x) * fx + constant<F>(rays.per_y) * fy;
+    place_ = constant<F>(rays.origin) + constant<F>(rays.origin_per_x) * fx +
+             constant<F>(rays.origin_per_y) * fy + ray * mean;
+    spread_ = ray * sqrt(max(variance, F(0.0f)));
+    if (u_.light_variance) {
+      covariance_ = {F(0.0f), F(0.0f), F(0.0f), F(0.0f), F(0.0f), F(0.0f)};
+      add_square(covariance_, spread_);
+    }
+  }
+
+  void place_by_depths(const AggregateRecord<F, I>& r) {
+    const I x = s_.pixel_x(), y = s_.pixel_y();
+    const glm::vec4& d = u_.depth_of_z;
+    F first(0.0f), sum(0.0f), squares(0.0f), count(0.0f);
+    s_.loop(kDepthBlock, u_.covariance ? 0 : u_.aggregate.samples, mask_, [&](int i) HWY_ATTR {
+      const F z = s_.load_image(u_.depth_slot, x, y, I(i)).x;
+      const M in = has_sample(r, x, y, i) & (z < F(1.0f));
+      const F depth = (F(d.x) + F(d.y) * z) / (F(d.z) + F(d.w) * z);
+      first = select(in & (count < F(0.5f)), depth, first);
+      const F from_first = select(in, depth - first, F(0.0f));  // squares of depths would cancel
+      count = count + select(in, F(1.0f), F(0.0f));
+      sum = sum + from_first;
+      squares = squares + from_first * from_first;
+    });
+    const F share = F(1.0f) / max(count, F(1.0f));
+    const F mean = sum * share;
+    place_along_ray(first + mean, squares * share - mean * mean);
+  }
+
+  void place_by_covariance(const AggregateRecord<F, I>& r) {
+    const I x = s_.pixel_x(), y = s_.pixel_y();
     Vec3<F> first = {F(0.0f), F(0.0f), F(0.0f)}, sum = first;
     SymmetricMatrix<F> squares = {F(0.0f), F(0.0f), F(0.0f), F(0.0f), F(0.0f), F(0.0f)};
     F count(0.0f);
@@ -149,21 +184,23 @@ class AggregateLight {
       surface_.normal = normalize(r.normal);
       set_gloss(s * factor);
     });
-    s_.uniform_branch(kSampleNormalsBlock, u_.diffuse == DiffuseFilter::samples,
-                      [&]() HWY_ATTR { diffuse_length_ = mean_normal_length(r); });
+    const F of_samples = mean_normal_length(r);
+    if (u_.diffuse == DiffuseFilter::samples) diffuse_length_ = of_samples;
   }
 
-  /// Length of the mean of the samples' normals: what geometry alone spreads them.
+  /// Length of the mean of the samples' normals: what geometry alone spreads them. No trips where it is not
+  /// asked for.
   F mean_normal_length(const AggregateRecord<F, I>& r) {
     const I x = s_.pixel_x(), y = s_.pixel_y();
     Vec3<F> sum = {F(0.0f), F(0.0f), F(0.0f)};
     F count(0.0f);
-    s_.loop(kSampleNormalBlock, u_.aggregate.samples, mask_, [&](int i) HWY_ATTR {
-      const Vec4<F> code = s_.load_image(u_.normal_slot, x, y, I(i));
-      const F one = select(has_sample(r, x, y, i), F(1.0f), F(0.0f));
-      sum = sum + decode_pixel_normal(code.x, code.y) * one;
-      count = count + one;
-    });
+    s_.loop(kSampleNormalBlock, u_.diffuse == DiffuseFilter::samples ? u_.aggregate.samples : 0, mask_,
+            [&](int i) HWY_ATTR {
+              const Vec4<F> code = s_.load_image(u_.normal_slot, x, y, I(i));
+              const F one = select(has_sample(r, x, y, i), F(1.0f), F(0.0f));
+              sum = sum + decode_pixel_normal(code.x, code.y) * one;
+              count = count + one;
+            });
     return min(sqrt(dot(sum, sum)) / max(count, F(1.0f)), F(1.0f - 1.0f / 65535.0f));
   }
 
@@ -180,7 +217,7 @@ class AggregateLight {
     });
   }
 
-  F diffuse(const Vec3<F>& l, F length) {
+  F diffuse(const Vec3<F>& l, const DiffuseLobe<F>& lobe) {
     const F mu = dot(surface_.normal, l);
     F result = max(mu, F(0.0f));
     if (u_.aggregate.ndf == Ndf::sggx) {
@@ -191,22 +228,23 @@ class AggregateLight {
       return sum * F(1.0f / static_cast<float>(u_.visible_normals));
     }
     s_.uniform_branch(kFilterBlock, u_.diffuse != DiffuseFilter::off,
-                      [&]() HWY_ATTR { result = vmf_diffuse(length, mu); });
+                      [&]() HWY_ATTR { result = diffuse_of(lobe, mu); });
     return result;
   }
 
   /// Light from the unit direction l, `variance` of it over the aggregate.
   Vec3<F> reflect(const Vec3<F>& l, F variance) {
     lanes::Surface<F> surface = surface_;
-    F length = diffuse_length_;
+    DiffuseLobe<F> lobe = lobe_;
     s_.uniform_branch(kVarianceBlock, u_.light_variance && u_.aggregate.ndf == Ndf::toksvig, [&]() HWY_ATTR {
       const F own = F(1.0f) / max(surface.exponent, F(1e-3f));
       surface.exponent = min(F(1.0f) / max(own + variance, F(1e-6f)), F(kLargestExponent));
       surface.alpha = sqrt(F(2.0f) / (surface.exponent + F(2.0f)));
-      length = length / (F(1.0f) + variance * length);
+      if (u_.diffuse != DiffuseFilter::off)
+        lobe = diffuse_lobe(diffuse_length_ / (F(1.0f) + variance * diffuse_length_));
     });
     const bool ggx = u_.lighting.model == pipeline::ShadingModel::ggx;
-    const Vec3<F> matte = surface.albedo * diffuse(l, length);
+    const Vec3<F> matte = surface.albedo * diffuse(l, lobe);
     switch (u_.aggregate.ndf) {
       case Ndf::toksvig:
         return matte + (ggx ? ggx_specular(surface, l) : blinn_phong_specular(surface, l));
@@ -267,6 +305,7 @@ class AggregateLight {
   Vec3<F> place_{}, spread_{};  ///< relative to the eye; standard deviation along the main axis
   SymmetricMatrix<F> covariance_{};
   F length_{}, diffuse_length_{};
+  DiffuseLobe<F> lobe_{};
   Lean<F> lean_{};
   Sggx<F> sggx_{};
   std::array<Vec3<F>, kMaxVisibleNormals> normals_{};

@@ -325,7 +325,8 @@ TEST(Agaa, EveryOptionRuns) {
   for (const char* options :
        {"diffuse_filter=geometric", "gloss=separate", "agg_float=on", "depth_moments=on", "light_variance=on",
         "mean_normal=raw", "seed_sum=d2,c=4", "shadow_taps=3", "s_ref=500", "msaa=16,agg_bytes=16",
-        "msaa=32,agg_bytes=20", "msaa=16,agg_bytes=16,ndf=sggx", "a2c_dither=off,centroid=off"}) {
+        "msaa=32,agg_bytes=20", "msaa=16,agg_bytes=16,ndf=sggx", "a2c_dither=off,centroid=off",
+        "shadow_axis=places", "shadow_axis=places,light_variance=on"}) {
     const pipeline::Emulation e = render({scene, std::string("agaa:") + options});
     double sum = 0.0;
     for (const glm::vec4& p : e.color.pixels) sum += p.x + p.y + p.z;

@@ -26,9 +26,11 @@ std::string printed(double mib) {
 TEST(Memory, IsThatOfThePublishedTable) {
   const std::pair<const char*, const char*> cells[] = {
       {"deferred_simple_complex:layout=gb_sbaa40,samples=4", "144.1"},
+      {"deferred_simple_complex:layout=gb_lauritzen,lighting=compute,samples=4", "144.1"},
       {"sbaa_top:n=2,msaa=4", "80.9"},
       {"sbaa_merge:n=2,msaa=4", "94.9"},
       {"deferred_simple_complex:layout=gb_sbaa40,samples=8", "284.8"},
+      {"deferred_simple_complex:layout=gb_lauritzen,lighting=compute,samples=8", "284.8"},
       {"sbaa_top:n=2,msaa=8", "98.4"},
       {"sbaa_top:n=3,msaa=8", "128.3"},
       {"sbaa_merge:n=2,msaa=8", "126.6"},
