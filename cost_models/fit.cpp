@@ -80,17 +80,23 @@ class PriorResidual : public ceres::SizedCostFunction<1, 1> {
   double center_, sd_;
 };
 
+/// Reports, and ends a start that has arrived where a finished one did: it is as low and hardly moves.
 class ProgressCallback : public ceres::IterationCallback {
  public:
-  ProgressCallback(const FitOptions& options, int start) : options_(options), start_(start) {}
+  ProgressCallback(const FitOptions& options, int start, double known_cost)
+      : options_(options), start_(start), known_cost_(known_cost) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (options_.progress) options_.progress(start_, summary.iteration, summary.cost);
-    return ceres::SOLVER_CONTINUE;
+    const bool arrived = std::abs(summary.cost - known_cost_) <= 0.5 * kSameCost * known_cost_;
+    const bool still = summary.iteration > 0 && summary.step_is_successful &&
+                       std::abs(summary.cost_change) < kSameCost * summary.cost;
+    return arrived && still ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
  private:
   const FitOptions& options_;
   int start_;
+  double known_cost_;  ///< negative: none
 };
 
 std::vector<std::size_t> parameters_of(const Experiment& experiment, std::size_t cell) {
@@ -105,11 +111,11 @@ std::vector<std::size_t> parameters_of(const Experiment& experiment, std::size_t
 class Solve {
  public:
   Solve(const Experiment& experiment, const std::vector<bool>& use, std::vector<double> start,
-        const FitOptions& options, int index)
+        const FitOptions& options, int index, double known_cost)
       : experiment_(experiment), values_(std::move(start)), shared_(experiment, use, values_, options.jobs) {
     // A redescending loss sees no slope far away: a convex one brings the values near first.
-    if (options.convex_first) solve(use, options, index, Loss::huber);
-    solve(use, options, index, Loss::cauchy);
+    if (options.convex_first) solve(use, options, index, Loss::huber, kNoCost);
+    solve(use, options, index, Loss::cauchy, known_cost);
   }
 
   const std::vector<double>& values() const { return values_; }
@@ -117,8 +123,10 @@ class Solve {
 
  private:
   enum class Loss { huber, cauchy };
+  static constexpr double kNoCost = -1.0;
 
-  void solve(const std::vector<bool>& use, const FitOptions& options, int index, Loss loss) {
+  void solve(const std::vector<bool>& use, const FitOptions& options, int index, Loss loss,
+             double known_cost) {
     ceres::Problem::Options problem_options;
     problem_options.evaluation_callback = &shared_;
     ceres::Problem problem(problem_options);
@@ -127,7 +135,7 @@ class Solve {
       if (used[i]) add_parameter(problem, i);
     for (std::size_t cell = 0; cell < use.size(); ++cell)
       if (use[cell]) add_cell(problem, cell, options, loss);
-    ProgressCallback progress(options, index);
+    ProgressCallback progress(options, index, known_cost);
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_QR;
     solver.max_num_iterations = loss == Loss::huber ? options.max_iterations / 4 : options.max_iterations;
@@ -268,13 +276,14 @@ Fit fit(const Experiment& experiment, const std::vector<bool>& use, const std::v
     for (std::size_t k = 0; k < from.size(); ++k)
       from[k] = std::clamp(from[k], std::log(experiment.parameters[k].low),
                            std::log(experiment.parameters[k].high));
-    const Solve solve(experiment, use, from, options, i);
+    const Solve solve(experiment, use, from, options, i, i == 0 ? -1.0 : result.cost);
     const ceres::Solver::Summary& s = solve.summary();
+    const bool arrived = s.termination_type == ceres::USER_SUCCESS;
     ends.push_back(solve.values());
     result.starts.push_back({s.final_cost, static_cast<int>(s.iterations.size()),
-                             s.termination_type == ceres::CONVERGENCE, false});
+                             s.termination_type == ceres::CONVERGENCE || arrived, false});
     if (i == 0) result.start_cost = s.initial_cost;
-    if (i > 0 && s.final_cost >= result.cost) continue;
+    if (i > 0 && (arrived || s.final_cost >= result.cost)) continue;
     best = ends.size() - 1;
     result.cost = s.final_cost;
     result.iterations = result.starts.back().iterations;
