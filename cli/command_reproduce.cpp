@@ -56,7 +56,7 @@ class Reproduction {
     for (const HeldOut& p : predictions_) set_time(p, known);
     for (const cost_models::Replay& replay : experiment_.replays)
       for (const std::size_t cell : replay.cells)
-        if (experiment_.cells[cell].use == RowUse::count)
+        if (experiment_.cells[cell].unit != "ms")
           answers_[cell].predicted = Real{cost_models::counted(experiment_, replay, cell),
                                           experiment_.cells[cell].unit == "mib" ? 1 : 0};
     for (std::size_t i = 0; i < answers_.size(); ++i)

@@ -11,7 +11,7 @@
 namespace hwsim::cli {
 namespace {
 
-constexpr std::size_t kWorstCells = 5;
+constexpr std::size_t kWorstCells = 10;
 
 }  // namespace
 

@@ -149,9 +149,9 @@ class Mapper {
   void set_value(Cell& cell) const {
     const PublishedRow& row = cell.row;
     cell.published = row.value;
-    cell.unit = row.quantity == "shaded_samples" || row.quantity == "percent_change_shaded" ? "samples"
-                : row.quantity == "memory_mbytes"                                           ? "mib"
-                                                                                            : "ms";
+    cell.unit = row.quantity == "shaded_samples" || row.quantity == "percent_change_shaded"  ? "samples"
+                : row.quantity == "memory_mbytes" || row.quantity == "percent_change_memory" ? "mib"
+                                                                                             : "ms";
     if (!is_percent(row)) return;
     if (const PublishedRow* reference = reference_of(row, rows_))
       cell.published = reference->value * (1.0 + row.value / 100.0);

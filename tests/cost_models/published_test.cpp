@@ -93,6 +93,22 @@ TEST(Published, ContradictedRowsAreLeftOut) {
   }
 }
 
+TEST(Published, RowsHaveTheUnitOfWhatTheyCount) {
+  int mib = 0;
+  for (const Cell& cell : all_cells()) {
+    if (cell.use == RowUse::claim) continue;
+    const bool memory = cell.row.quantity.find("memory") != std::string::npos;
+    const bool samples = cell.row.quantity.find("shaded") != std::string::npos;
+    EXPECT_EQ(cell.unit, memory ? "mib" : samples ? "samples" : "ms") << cell.row.id();
+    if (memory && cell.use == RowUse::derived) {
+      ++mib;
+      EXPECT_GT(cell.published, 80.0) << cell.row.id();  // percentages of 144.1 and 284.8 MiB, made absolute
+      EXPECT_LT(cell.published, 160.0) << cell.row.id();
+    }
+  }
+  EXPECT_EQ(mib, 6);
+}
+
 TEST(Published, PatternsSelectPasses) {
   EXPECT_TRUE(pass_matches("*", "gbuffer"));
   EXPECT_TRUE(pass_matches("light* resolve", "light_complex"));
