@@ -25,7 +25,7 @@ enum ShadeBlock : int {
   kTapBlock = 10,
   kNormalBlock = 11,
   kNormalDotBlock = 12,
-  kFilterBlock = 13,
+  kLobeBlock = 13,
   kSampleNormalBlock = 14,
   kDepthBlock = 15,
   kCovarianceBlock = 16
@@ -52,8 +52,8 @@ class AggregateLight {
     surface_.specular = decode_specular(r.luma, r.cb, r.cr);
     surface_.emissive = {r.emissive, r.emissive, r.emissive};
     find_shape(r);
-    if (u_.diffuse != DiffuseFilter::off && u_.aggregate.ndf != Ndf::sggx)
-      lobe_ = diffuse_lobe(diffuse_length_);
+    s_.uniform_branch(kLobeBlock, u_.diffuse != DiffuseFilter::off && u_.aggregate.ndf != Ndf::sggx,
+                      [&]() HWY_ATTR { lobe_ = diffuse_lobe(diffuse_length_); });
     return light();
   }
 
@@ -227,22 +227,13 @@ class AggregateLight {
       });
       return sum * F(1.0f / static_cast<float>(u_.visible_normals));
     }
-    s_.uniform_branch(kFilterBlock, u_.diffuse != DiffuseFilter::off,
-                      [&]() HWY_ATTR { result = diffuse_of(lobe, mu); });
+    // Without a block of its own: those of both loops over lights would add up in one.
+    if (u_.diffuse != DiffuseFilter::off) result = diffuse_of(lobe, mu);
     return result;
   }
 
-  /// Light from the unit direction l, `variance` of it over the aggregate.
-  Vec3<F> reflect(const Vec3<F>& l, F variance) {
-    lanes::Surface<F> surface = surface_;
-    DiffuseLobe<F> lobe = lobe_;
-    s_.uniform_branch(kVarianceBlock, u_.light_variance && u_.aggregate.ndf == Ndf::toksvig, [&]() HWY_ATTR {
-      const F own = F(1.0f) / max(surface.exponent, F(1e-3f));
-      surface.exponent = min(F(1.0f) / max(own + variance, F(1e-6f)), F(kLargestExponent));
-      surface.alpha = sqrt(F(2.0f) / (surface.exponent + F(2.0f)));
-      if (u_.diffuse != DiffuseFilter::off)
-        lobe = diffuse_lobe(diffuse_length_ / (F(1.0f) + variance * diffuse_length_));
-    });
+  /// Light from the unit direction l.
+  Vec3<F> reflect(const Vec3<F>& l, const lanes::Surface<F>& surface, const DiffuseLobe<F>& lobe) {
     const bool ggx = u_.lighting.model == pipeline::ShadingModel::ggx;
     const Vec3<F> matte = surface.albedo * diffuse(l, lobe);
     switch (u_.aggregate.ndf) {
@@ -256,6 +247,18 @@ class AggregateLight {
     return matte;
   }
 
+  /// Lobes as wide as the directions to a near light vary over the aggregate make them.
+  void widen(const pipeline::PointLight& light, const Vec3<F>& l, lanes::Surface<F>& surface,
+             DiffuseLobe<F>& lobe) const {
+    const Vec3<F> d = constant<F>(light.position) - surface_.position;
+    const F variance = across_variance(covariance_, l) / max(dot(d, d), F(1e-6f));
+    const F own = F(1.0f) / max(surface.exponent, F(1e-3f));
+    surface.exponent = min(F(1.0f) / max(own + variance, F(1e-6f)), F(kLargestExponent));
+    surface.alpha = sqrt(F(2.0f) / (surface.exponent + F(2.0f)));
+    if (u_.diffuse != DiffuseFilter::off)
+      lobe = diffuse_lobe(diffuse_length_ / (F(1.0f) + variance * diffuse_length_));
+  }
+
   Vec3<F> light() {
     const pipeline::LightingUniforms& lights = u_.lighting;
     Vec3<F> sum = surface_.emissive + surface_.albedo * constant<F>(lights.ambient);
@@ -264,7 +267,8 @@ class AggregateLight {
       F visible(1.0f);
       s_.uniform_branch(lanes::kShadowBlock, light.shadowed && lights.shadow_slot >= 0,
                         [&]() HWY_ATTR { visible = filtered_shadow(); });
-      sum = sum + reflect(constant<F>(light.to_light), F(0.0f)) * (constant<F>(light.color) * visible);
+      sum =
+          sum + reflect(constant<F>(light.to_light), surface_, lobe_) * (constant<F>(light.color) * visible);
     });
     const std::span points(lights.points.data(), s_.loop_count(lights.point_count));
     s_.loop(lanes::kPointBlock, static_cast<int>(points.size()), mask_, [&](int i) HWY_ATTR {
@@ -272,10 +276,11 @@ class AggregateLight {
       Vec3<F> l;
       const F attenuation = lanes::point_attenuation(light, surface_.position, l);
       s_.branch(lanes::kPointInRangeBlock, mask_ & (attenuation > F(0.0f)), [&]() HWY_ATTR {
-        const Vec3<F> d = constant<F>(light.position) - surface_.position;
-        F variance(0.0f);
-        if (u_.light_variance) variance = across_variance(covariance_, l) / max(dot(d, d), F(1e-6f));
-        sum = sum + reflect(l, variance) * (constant<F>(light.color) * attenuation);
+        lanes::Surface<F> surface = surface_;
+        DiffuseLobe<F> lobe = lobe_;
+        s_.uniform_branch(kVarianceBlock, u_.light_variance && u_.aggregate.ndf == Ndf::toksvig,
+                          [&]() HWY_ATTR { widen(light, l, surface, lobe); });
+        sum = sum + reflect(l, surface, lobe) * (constant<F>(light.color) * attenuation);
       });
     });
     return sum;

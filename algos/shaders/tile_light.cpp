@@ -81,6 +81,13 @@ pipeline::ComputeProgram describe_tile_light(void (*run)(pipeline::GroupBatch&, 
   program.name = "tile_light";
   program.run = run;
   program.ops = s.blocks();
+  // The lights' blocks stand at both places that light, and lanes are counted at each: they cost what they do
+  // at one.
+  lanes::CountFragment once;
+  light_at<kEncoding>(once, u, points, I(0), F(0.0f), F(0.0f));
+  for (const int block :
+       {lanes::kShadowBlock, lanes::kDirectionalBlock, lanes::kPointBlock, lanes::kPointInRangeBlock})
+    program.ops[static_cast<std::size_t>(block)] = once.blocks()[static_cast<std::size_t>(block)];
   program.ops[kCullBlock].group_memory = 1;
   program.ops[kTileClassifyBlock].group_memory = 1;
   program.ops[kOtherSampleBlock].group_memory = 1;
