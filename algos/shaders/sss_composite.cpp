@@ -116,25 +116,30 @@ const GeometryProgram& sss_marks_program(SssVertex vertex) {
 }
 
 const FragmentProgram& sss_mark_program() {
-  static const FragmentProgram program = describe_fragment_shader<shaders::MarkShader>(
-      "sss_mark", [](FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_mark)
-                                                        (b, u); });
+  static const FragmentProgram program =
+      describe_fragment_shader<shaders::MarkShader>("sss_mark", [](FragmentBatch& b, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_mark)
+        (b, u);
+      });
   return program;
 }
 
 const FragmentProgram& sss_composite_program() {
   static const FragmentProgram program = describe_fragment_shader<shaders::CompositeShader>(
-      "sss_composite", [](FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_composite)
-                                                             (b, u); });
+      "sss_composite", [](FragmentBatch& b, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_composite)
+        (b, u);
+      });
   return program;
 }
 
 const FragmentProgram& sss_sum_composite_program(bool floats) {
   static const FragmentProgram programs[] = {
-      describe_fragment_shader<shaders::SumCompositeShader<false>>(
-          "sss_fixed_composite",
-          [](FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_fixed_composite)
-                                                (b, u); }),
+      describe_fragment_shader<shaders::SumCompositeShader<false>>("sss_fixed_composite",
+                                                                   [](FragmentBatch& b, const void* u) {
+                                                                     HWY_DYNAMIC_DISPATCH(run_fixed_composite)
+                                                                     (b, u);
+                                                                   }),
       describe_fragment_shader<shaders::SumCompositeShader<true>>(
           "sss_float_composite", [](FragmentBatch& b, const void* u) {
             HWY_DYNAMIC_DISPATCH(run_float_composite)(b, u);
