@@ -84,8 +84,10 @@ class CountFragment {
   template <class Body>
   void loop(int block, int, M mask, Body&& body) {
     made(OpKind::output, mask);
-    enter(block, [&]() HWY_ATTR { body(0); });
-    recorder_.ops(block).alu += 2;  // the counter and its comparison
+    enter(block, [&]() HWY_ATTR {
+      recorder_.ops().alu += 2;  // the counter and its comparison
+      body(0);
+    });
   }
   I load_buffer(int, I index, M mask) { return I(made(OpKind::load, index, mask)); }
   void store_buffer(int, I index, I value, M mask) {
@@ -114,8 +116,10 @@ class CountFragment {
   template <class Body>
   void loop_each(int block, I count, M mask, Body&& body) {
     made(OpKind::output, count, mask);
-    enter(block, [&]() HWY_ATTR { body(0, M{}); });
-    recorder_.ops(block).alu += 2;
+    enter(block, [&]() HWY_ATTR {
+      recorder_.ops().alu += 2;
+      body(0, M{});
+    });
   }
   std::size_t loop_count(int) const { return 1; }
   void store_image(int, I x, I y, I sample, const Vec4<F>& color, M mask) {
@@ -165,11 +169,10 @@ class CountFragment {
  private:
   template <class Body>
   void enter(int block, Body&& body) {
-    const int outer = recorder_.block();
-    recorder_.enter(block);
+    const OpRecorder::Site outer = recorder_.open(block);
     recorder_.ops().alu += 1;  // the branch itself
     body();
-    recorder_.enter(outer);
+    recorder_.close(outer);
   }
 
   MaterialView material_;

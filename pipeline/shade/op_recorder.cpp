@@ -1,6 +1,7 @@
 #include "pipeline/shade/op_recorder.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace hwsim::pipeline {
 namespace {
@@ -43,6 +44,14 @@ void charge(OpKind kind, ShaderOps& ops) {
   }
 }
 
+ShaderOps dearest(const ShaderOps& a, const ShaderOps& b) {
+  ShaderOps ops;
+  for (const auto count : {&ShaderOps::alu, &ShaderOps::sfu, &ShaderOps::interp, &ShaderOps::tex,
+                           &ShaderOps::load, &ShaderOps::store, &ShaderOps::atomic, &ShaderOps::group_memory})
+    ops.*count = std::max(a.*count, b.*count);
+  return ops;
+}
+
 bool waits_for_memory(OpKind kind) {
   return kind == OpKind::texture || kind == OpKind::fetch || kind == OpKind::load || kind == OpKind::atomic;
 }
@@ -55,11 +64,11 @@ bool runs_on_lanes(OpKind kind) {
 
 int OpRecorder::add(OpKind kind, const Operands& operands) {
   charge(kind, ops());
-  Op op{operands, block_, 0, 0};
+  Op op{operands, block_, site_, 0, 0};
   for (std::size_t i = 0; i < operands.size(); ++i) {
     if (operands[i] < 0) continue;
     const Op& from = record_[static_cast<std::size_t>(operands[i])];
-    if (from.block != block_) continue;
+    if (from.site != site_) continue;
     // The fused operation issues when the addend is there; its product (operand 0) issues with it.
     const std::uint32_t issue = kind == OpKind::fused && i > 0 ? 1 : 0;
     op.alu_chain = std::max(op.alu_chain, from.alu_chain + issue);
@@ -71,10 +80,21 @@ int OpRecorder::add(OpKind kind, const Operands& operands) {
   return static_cast<int>(record_.size()) - 1;
 }
 
-void OpRecorder::enter(int block) {
-  blocks_.at(static_cast<std::size_t>(block));
+OpRecorder::Site OpRecorder::open(int block) {
+  const auto b = static_cast<std::size_t>(block);
+  Site outer{block_, site_, {}};
+  if (open_.at(b)++ == 0) std::swap(outer.elsewhere, blocks_[b]);
   block_ = block;
+  site_ = sites_++;
   block_count_ = std::max(block_count_, block + 1);
+  return outer;
+}
+
+void OpRecorder::close(const Site& outer) {
+  const auto b = static_cast<std::size_t>(block_);
+  if (--open_[b] == 0) blocks_[b] = dearest(blocks_[b], outer.elsewhere);
+  block_ = outer.block;
+  site_ = outer.number;
 }
 
 // Every operation as late as its users allow; a register holds a result from there to its last use.

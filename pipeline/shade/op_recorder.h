@@ -33,11 +33,18 @@ class OpRecorder {
 
   /// Charges the current block and returns the operation's number.
   int add(OpKind kind, const Operands& operands);
-  int block() const { return block_; }
-  void enter(int block);
+  /// A place in the shader where a block stands.
+  struct Site {
+    int block = 0, number = 0;
+    ShaderOps elsewhere;  ///< what the opened block costs at its other sites
+  };
+  /// From here on a block is recorded, until close(); returns where the shader was. A function that is called
+  /// at several places brings its blocks along to each: lanes are counted at all of them, so such a block
+  /// costs what it does at one, the dearest, not their sum.
+  Site open(int block);
+  void close(const Site& outer);
   /// Of the block that is being recorded, for what has no operands: branches and loop counters.
   ShaderOps& ops() { return blocks_[static_cast<std::size_t>(block_)]; }
-  ShaderOps& ops(int block) { return blocks_[static_cast<std::size_t>(block)]; }
   int block_count() const { return block_count_; }
 
   /// The blocks, with chains, words and (in block 0) registers filled in.
@@ -46,14 +53,15 @@ class OpRecorder {
  private:
   struct Op {
     Operands operands;
-    int block;
+    int block, site;
     std::uint32_t alu_chain, memory_chain;  ///< longest, of its own block, up to here
   };
   std::uint32_t registers() const;
 
   std::vector<Op> record_;
   BlockOps blocks_{};
-  int block_ = 0;
+  std::array<int, kMaxBlocks> open_{};  ///< how often a block is open now
+  int block_ = 0, site_ = 0, sites_ = 1;
   int block_count_ = 1;
 };
 

@@ -85,5 +85,36 @@ TEST(OpRecorder, BlocksHaveChainsOfTheirOwn) {
   EXPECT_EQ(blocks[1].alu, 2u);        // and the branch
 }
 
+// A function called at two places brings its block to both. Lanes are counted at each, so the block costs
+// what it does at one.
+TEST(OpRecorder, ABlockAtTwoPlacesCostsWhatItDoesAtTheDearest) {
+  CountFragment s;
+  const CountF x = s.attr(0);
+  CountF sum = x;
+  const auto light = [&](int steps) {
+    s.branch(2, x < x, [&]() {
+      for (int i = 0; i < steps; ++i) sum = sum + x;
+      s.branch(3, x < x, [&]() { sum = rsqrt(sum); });
+    });
+  };
+  light(3);
+  light(5);
+  light(4);
+  s.output(0, {sum, sum, sum, sum});
+  const BlockOps blocks = s.blocks();
+  EXPECT_EQ(blocks[2].alu, 5u + 1u + 1u);  // additions, the inner comparison, the branch
+  EXPECT_EQ(blocks[2].alu_chain, 5u);  // not the 12 of all three, though each goes on with the last one's sum
+  EXPECT_EQ(blocks[3].sfu, 1u);
+  EXPECT_EQ(blocks[3].alu, 1u);
+  EXPECT_EQ(blocks[0].alu, 3u);  // the outer comparisons
+}
+
+TEST(OpRecorder, ABlockInsideItselfAddsUp) {
+  CountFragment s;
+  const CountF x = s.attr(0);
+  s.branch(1, x < x, [&]() { s.branch(1, x < x, [&]() { s.output(0, {x + x, x, x, x}); }); });
+  EXPECT_EQ(s.blocks()[1].alu, 1u + 1u + 1u + 1u);  // two branches, a comparison, an addition
+}
+
 }  // namespace
 }  // namespace hwsim::pipeline
