@@ -13,13 +13,11 @@
 #include <sstream>
 #include <thread>
 
-#include "algos/technique.h"
-#include "hwsim/base/diagnostics.h"
 #include "hwsim/config/gpu_keys.h"
 #include "hwsim/timing/timing.h"
 #include "hwsim/trace_file.h"
 #include "pipeline/emulate/emulator.h"
-#include "pipeline/scene/scene_source.h"
+#include "study_input.h"
 #include "study_report.h"
 
 namespace hwsim::benchmarks {
@@ -43,34 +41,9 @@ struct Options {
   std::vector<std::string> scenes, techniques;
 };
 
-std::vector<std::string> split(const std::string& list) {
-  std::vector<std::string> parts;
-  std::istringstream in(list);
-  for (std::string part; std::getline(in, part, ',');) parts.push_back(part);
-  return parts;
-}
-
 GpuConfig gpu_of(const std::string& id) { return load_gpu(id, {}, {}, HWSIM_SOURCE_DIR "/configs/gpus"); }
 
-double milliseconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
-pipeline::FrameGraph frame_of(const std::shared_ptr<const pipeline::Scene>& scene,
-                              const std::string& technique, const GpuConfig& gpu, const Options& o) {
-  algos::FrameRequest request;
-  request.scene = scene;
-  request.width_px = o.width;
-  request.height_px = o.height;
-  request.features = gpu.features;
-  request.functional = gpu.functional;
-  return algos::build_frame(algos::parse_technique(technique), request);
-}
-
-std::shared_ptr<const pipeline::Scene> scene_of(const std::string& name) {
-  return std::make_shared<const pipeline::Scene>(
-      pipeline::open_scene(name, pipeline::default_cache_directory() + "/scenes"));
-}
+double milliseconds_since(std::chrono::steady_clock::time_point start) { return 1e3 * seconds_since(start); }
 
 /// From the cache of the study, or emulated: work does not depend on what the engines vary, so all GPUs get
 /// the trace of one whose features every technique can use.
@@ -87,9 +60,9 @@ WorkTrace trace_of(const std::string& scene, const std::string& technique, const
   }
   pipeline::EmulationOptions options;
   options.jobs = 2;
-  WorkTrace trace =
-      pipeline::emulate(frame_of(scene_of(scene), technique, gpu, o), gpu.features, gpu.functional, options)
-          .trace;
+  WorkTrace trace = pipeline::emulate(study_frame(open_study_scene(scene), technique, gpu, o.width, o.height),
+                                      gpu.features, gpu.functional, options)
+                        .trace;
   const std::vector<std::uint8_t> bytes = encode_trace(trace);
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
@@ -170,7 +143,8 @@ double emulation_ms(const pipeline::FrameGraph& graph, const GpuConfig& gpu,
 /// Emulation with each skip off, with all off, and with exact reuse distances, against all skips on.
 void study_skips(const Options& o, std::ostream& out) {
   const GpuConfig gpu = gpu_of("gtx980");
-  const pipeline::FrameGraph graph = frame_of(scene_of(o.scenes.front()), "msaa4x", gpu, o);
+  const pipeline::FrameGraph graph =
+      study_frame(open_study_scene(o.scenes.front()), "msaa4x", gpu, o.width, o.height);
   pipeline::EmulationOptions options;
   const double base = emulation_ms(graph, gpu, options);
   out << "| emulation of " << o.scenes.front() << " msaa4x, " << o.width << "x" << o.height
@@ -246,8 +220,8 @@ int run(const Options& o) {
 
 int main(int argc, char** argv) try {
   hwsim::benchmarks::Options o;
-  o.scenes = hwsim::benchmarks::split(argc > 3 ? argv[3] : hwsim::benchmarks::kScenes);
-  o.techniques = hwsim::benchmarks::split(argc > 4 ? argv[4] : hwsim::benchmarks::kTechniques);
+  o.scenes = hwsim::benchmarks::split_list(argc > 3 ? argv[3] : hwsim::benchmarks::kScenes);
+  o.techniques = hwsim::benchmarks::split_list(argc > 4 ? argv[4] : hwsim::benchmarks::kTechniques);
   if (argc < 2 || (argc > 2 && std::sscanf(argv[2], "%dx%d", &o.width, &o.height) != 2)) {
     std::fprintf(stderr, "usage: engine_study OUT_DIR [WIDTHxHEIGHT [SCENE,... [TECHNIQUE,...]]]\n");
     return 2;
@@ -255,6 +229,5 @@ int main(int argc, char** argv) try {
   o.out = argv[1];
   return hwsim::benchmarks::run(o);
 } catch (const hwsim::InputError& error) {
-  for (const hwsim::Diagnostic& d : error.diagnostics()) std::fprintf(stderr, "%s\n", d.message.c_str());
-  return 3;
+  return hwsim::benchmarks::report(error);
 }

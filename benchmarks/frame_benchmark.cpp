@@ -10,14 +10,11 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
-#include <sstream>
 
-#include "algos/technique.h"
-#include "hwsim/base/diagnostics.h"
 #include "hwsim/config/gpu_keys.h"
 #include "hwsim/timing/timing.h"
 #include "pipeline/emulate/emulator.h"
-#include "pipeline/scene/scene_source.h"
+#include "study_input.h"
 
 namespace hwsim::benchmarks {
 namespace {
@@ -38,17 +35,6 @@ struct Row {
   double fragments = 0.0;
   std::array<double, kSkipCount + 1> seconds_without;  ///< each skip, and all of them
 };
-
-std::vector<std::string> split(const std::string& list) {
-  std::vector<std::string> parts;
-  std::istringstream in(list);
-  for (std::string part; std::getline(in, part, ',');) parts.push_back(part);
-  return parts;
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// The documented GTX 980 with every feature that a technique may ask for, as `queue` times it.
 GpuConfig every_gpu() {
@@ -120,19 +106,10 @@ double peak_gib() {
 int run(const Options& o) {
   print_head(o);
   const GpuConfig gpu = every_gpu();
-  for (const std::string& name : split(o.scenes)) {
-    const auto scene = std::make_shared<const pipeline::Scene>(
-        pipeline::open_scene(name, pipeline::default_cache_directory() + "/scenes"));
-    for (const std::string& technique : split(o.techniques)) {
-      algos::FrameRequest request;
-      request.scene = scene;
-      request.width_px = o.width_px;
-      request.height_px = o.height_px;
-      request.features = gpu.features;
-      request.functional = gpu.functional;
-      print(measure(algos::build_frame(algos::parse_technique(technique), request), gpu, o), name, technique,
-            o);
-    }
+  for (const std::string& name : split_list(o.scenes)) {
+    const ScenePointer scene = open_study_scene(name);
+    for (const std::string& technique : split_list(o.techniques))
+      print(measure(study_frame(scene, technique, gpu, o.width_px, o.height_px), gpu, o), name, technique, o);
   }
   std::printf("\npeak memory of the process: %.2f GiB; %d threads, %dx%d, best of %d\n", peak_gib(), o.jobs,
               o.width_px, o.height_px, o.runs);
@@ -166,6 +143,5 @@ int main(int argc, char** argv) try {
     }
   return hwsim::benchmarks::run(o);
 } catch (const hwsim::InputError& error) {
-  for (const hwsim::Diagnostic& d : error.diagnostics()) std::fprintf(stderr, "%s\n", d.message.c_str());
-  return 3;
+  return hwsim::benchmarks::report(error);
 }

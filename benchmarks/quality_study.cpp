@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,7 +22,7 @@
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/image/metrics.h"
 #include "pipeline/scene/generate/registry.h"
-#include "pipeline/scene/scene_source.h"
+#include "study_input.h"
 
 namespace hwsim::benchmarks {
 namespace {
@@ -78,8 +77,6 @@ std::vector<std::string> asked_or(const char* const (&usual)[kCount], const Stud
   return study.techniques.empty() ? std::vector<std::string>(std::begin(usual), std::end(usual))
                                   : study.techniques;
 }
-
-using ScenePointer = std::shared_ptr<const pipeline::Scene>;
 
 /// The scene seen by its first camera turned so that the picture moves by `pan_px`.
 ScenePointer panned(const ScenePointer& scene, glm::vec2 pan_px, const Study& study) {
@@ -258,16 +255,13 @@ int main(int argc, char** argv) {
         "[0,1].\n",
         study.width_px, study.height_px, study.samples);
     for (const std::string& name : study.scenes) {
-      const ScenePointer scene = std::make_shared<const pipeline::Scene>(
-          pipeline::open_scene(name, pipeline::default_cache_directory()));
+      const ScenePointer scene = open_study_scene(name);
       const std::string shown = name.substr(name.find_last_of('/') + 1);
       if (study.errors) errors(shown, scene, study);
       if (study.stability) stability(shown, scene, study);
     }
   } catch (const InputError& error) {
-    for (const Diagnostic& d : error.diagnostics())
-      std::fprintf(stderr, "%s: %s\n", d.code.c_str(), d.message.c_str());
-    return 3;
+    return report(error);
   }
   return 0;
 }
