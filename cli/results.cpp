@@ -86,7 +86,10 @@ std::string band_of(double sol_ratio) {  // the bands of the performance-triage 
 
 }  // namespace
 
-std::uint64_t shaded_samples(const WorkTrace& trace) { return total(trace).technique.lit_samples; }
+std::uint64_t shaded_samples(const WorkTrace& trace) {
+  const TechniqueCounters counts = total(trace).technique;
+  return counts.lit_samples + counts.sss_shaded_samples;
+}
 
 std::uint64_t shader_invocations(const WorkTrace& trace) {
   const PassCounters sum = total(trace);

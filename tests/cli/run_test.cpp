@@ -162,6 +162,21 @@ TEST_F(RunTest, SeveralTechniquesGiveOneSummary) {
             "log.txt manifest.json msaa4x@gtx470 msaa4x@gtx980 none@gtx470 none@gtx980 summary.csv");
 }
 
+// The frame below is that of msaa8x; what selective supersampling lights beyond it counts like any other
+// light.
+TEST_F(RunTest, FurtherSamplesCountAsShaded) {
+  const Outcome outcome = place.hwsim(
+      "run grill -t msaa8x,sss_cs:mode=or --resolution 96x54 --no-shadows --json --no-image --out grill");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json results = json::parse(outcome.out)["results"];
+  std::uint64_t further = 0;
+  for (const json& pass : results[1]["passes"])
+    further += pass["counters"].value("technique.sss_shaded_samples", std::uint64_t{0});
+  EXPECT_GT(further, 0u);
+  EXPECT_EQ(results[1]["frame"]["shaded_samples"].get<std::uint64_t>(),
+            results[0]["frame"]["shaded_samples"].get<std::uint64_t>() + further);
+}
+
 TEST_F(RunTest, FasterMemoryIsNeverSlower) {
   const auto time_ms = [&](const std::string& bandwidth) {
     const Outcome outcome = run("-t msaa4x --json --no-image --set gpu.dram_bandwidth_gb_s=" + bandwidth +
