@@ -1,8 +1,10 @@
 // How near each technique comes to the ray-traced truth, and how still its images stand while the camera
 // moves by parts of a pixel: Markdown tables on standard output.
 //
-//   quality_study [--samples=256] [--size=480x270] [--frames=8] [--jobs=2] [--only=errors|stability] [scene
-//   ...]
+//   quality_study [--samples=256] [--size=480x270] [--frames=8] [--jobs=2] [--only=errors|stability|kept]
+//                 [--technique=T ...] [scene ...]
+// `kept` gives filters the truth itself, which has no edges left to smooth, or an image file: what they
+// change of it they lose.
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -21,6 +23,7 @@
 #include "pipeline/base/file_io.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/image/metrics.h"
+#include "pipeline/image/srgb_codes.h"
 #include "pipeline/scene/generate/registry.h"
 #include "study_input.h"
 
@@ -65,10 +68,12 @@ constexpr const char* kWatched[] = {"none",         "msaa8x",         "ssaa64x",
                                     "sbaa_top:n=4", "agaa:c=2",       "sss_cs",  "sss_ppll",
                                     kLists,         "wire_aa+msaa4x", "fxaa",    "smaa"};
 
+constexpr const char* kFilters[] = {"fxaa", "axaa", "smaa", "cmaa", "mlaa"};
+
 struct Study {
   int width_px = 480, height_px = 270;
   int samples = 256, frames = 8, jobs = 2;
-  bool errors = true, stability = true;
+  bool errors = true, stability = true, kept = true;
   std::vector<std::string> scenes, techniques;
 };
 
@@ -153,8 +158,7 @@ double masked_rmse(const Image& image, const Image& reference, const std::vector
   return count == 0 ? std::nan("") : std::sqrt(sum / static_cast<double>(count));
 }
 
-void errors(const std::string& name, const ScenePointer& scene, const Study& study) {
-  const Image reference = truth(scene, study.samples, study);
+void errors(const std::string& name, const ScenePointer& scene, const Image& reference, const Study& study) {
   const std::vector<char> bright = highlights(reference);
   const auto share =
       static_cast<double>(std::count(bright.begin(), bright.end(), 1)) / static_cast<double>(bright.size());
@@ -209,37 +213,94 @@ void stability(const std::string& name, const ScenePointer& scene, const Study& 
   }
 }
 
-int number_after(std::string_view argument, std::string_view flag) {
-  return std::max(1, std::atoi(std::string(argument.substr(flag.size())).c_str()));
+/// Sum of the differences of neighbors in luma: what blur takes away.
+double contrast(const Image& image) {
+  double sum = 0.0;
+  for (int y = 0; y + 1 < image.height; ++y)
+    for (int x = 0; x + 1 < image.width; ++x) {
+      const float here = shown_luma(image.at(x, y));
+      sum +=
+          std::abs(here - shown_luma(image.at(x + 1, y))) + std::abs(here - shown_luma(image.at(x, y + 1)));
+    }
+  return sum;
 }
 
-Study parse(int argc, char** argv) {
-  Study study;
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view argument = argv[i];
-    if (argument.starts_with("--samples="))
-      study.samples = number_after(argument, "--samples=");
-    else if (argument.starts_with("--frames="))
-      study.frames = std::max(2, number_after(argument, "--frames="));
-    else if (argument.starts_with("--jobs="))
-      study.jobs = number_after(argument, "--jobs=");
-    else if (argument.starts_with("--technique="))
-      study.techniques.emplace_back(argument.substr(std::string_view("--technique=").size()));
-    else if (argument == "--only=errors")
-      study.stability = false;
-    else if (argument == "--only=stability")
-      study.errors = false;
-    else if (argument.starts_with("--size=")) {
-      study.width_px = number_after(argument, "--size=");
-      study.height_px = number_after(argument, argument.substr(0, argument.find('x') + 1));
-    } else {
-      study.scenes.emplace_back(argument);
-    }
+/// What filters do to an image that needs none.
+void kept(const std::string& name, const pipeline::RawImage& smooth, const Study& study) {
+  algos::FrameRequest request;
+  request.scene = std::make_shared<const pipeline::Scene>();
+  request.image = std::make_shared<const pipeline::RawImage>(smooth);
+  request.width_px = smooth.width;
+  request.height_px = smooth.height;
+  request.features = every_feature(8);
+  pipeline::EmulationOptions options;
+  options.jobs = study.jobs;
+  const Image before = pipeline::linear_image(smooth);
+  std::printf(
+      "\n### %s, smooth before it is filtered\n\n| filter | PSNR dB | FLIP | pixels changed %% | contrast "
+      "kept "
+      "%% |\n|---|---|---|---|---|\n",
+      name.c_str());
+  for (const char* technique : kFilters) {
+    const pipeline::FrameGraph graph = algos::build_frame(algos::parse_technique(technique), request);
+    const Image after = pipeline::emulate(graph, request.features, FunctionalConfig{}, options).color;
+    const pipeline::RawImage codes = pipeline::srgb_codes(after);
+    std::size_t changed = 0;
+    for (std::size_t i = 0; i < codes.texels.size(); ++i) changed += codes.texels[i] != smooth.texels[i];
+    const pipeline::ImageError e = pipeline::compare(after, before);
+    std::printf("| `%s` | %.2f | %.4f | %.1f | %.1f |\n", technique, e.psnr_db, e.flip_mean,
+                100.0 * static_cast<double>(changed) / static_cast<double>(codes.texels.size()),
+                100.0 * contrast(after) / contrast(before));
+    std::fflush(stdout);
   }
-  if (study.scenes.empty())
-    for (const pipeline::GeneratorInfo& generator : pipeline::generators())
-      study.scenes.push_back(generator.name);
-  return study;
+}
+
+int number(std::string_view text) { return std::atoi(std::string(text).c_str()); }
+
+bool parse_part(std::string_view part, Study& study) {
+  study.errors = part == "errors";
+  study.stability = part == "stability";
+  study.kept = part == "kept";
+  return study.errors || study.stability || study.kept;
+}
+
+/// False where an argument is not understood.
+bool parse(std::string_view argument, Study& study) {
+  const auto value = [&](std::string_view flag) {
+    return argument.starts_with(flag) ? argument.substr(flag.size()) : std::string_view();
+  };
+  if (const auto text = value("--samples="); !text.empty()) return (study.samples = number(text)) > 0;
+  if (const auto text = value("--frames="); !text.empty()) return (study.frames = number(text)) > 1;
+  if (const auto text = value("--jobs="); !text.empty()) return (study.jobs = number(text)) > 0;
+  if (const auto text = value("--only="); !text.empty()) return parse_part(text, study);
+  if (const auto text = value("--technique="); !text.empty()) {
+    study.techniques.emplace_back(text);
+    return true;
+  }
+  if (const auto text = value("--size="); !text.empty()) {
+    const std::size_t cross = text.find('x');
+    study.width_px = number(text.substr(0, cross));
+    study.height_px = cross == text.npos ? 0 : number(text.substr(cross + 1));
+    return study.width_px > 0 && study.height_px > 0;
+  }
+  if (argument.starts_with("-")) return false;
+  study.scenes.emplace_back(argument);
+  return true;
+}
+
+void run(const std::string& name, const Study& study) {
+  const std::string shown = name.substr(name.find_last_of('/') + 1);
+  if (name.ends_with(".png")) {
+    kept(shown, pipeline::srgb_codes(pipeline::read_image(name)), study);
+    return;
+  }
+  const ScenePointer scene = open_study_scene(name);
+  if (study.errors || study.kept) {
+    const Image reference = truth(scene, study.samples, study);
+    if (study.errors) errors(shown, scene, reference, study);
+    if (study.kept) kept(shown, pipeline::srgb_codes(reference), study);
+  }
+  if (study.stability) stability(shown, scene, study);
 }
 
 }  // namespace
@@ -248,18 +309,23 @@ Study parse(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace hwsim;
   using namespace hwsim::benchmarks;
-  const Study study = parse(argc, argv);
-  try {
-    std::printf(
-        "# Quality\n\n%dx%d, no shadow map, against %d samples a pixel traced by rays; sRGB values in "
-        "[0,1].\n",
-        study.width_px, study.height_px, study.samples);
-    for (const std::string& name : study.scenes) {
-      const ScenePointer scene = open_study_scene(name);
-      const std::string shown = name.substr(name.find_last_of('/') + 1);
-      if (study.errors) errors(shown, scene, study);
-      if (study.stability) stability(shown, scene, study);
+  Study study;
+  for (int i = 1; i < argc; ++i)
+    if (!parse(argv[i], study)) {
+      std::fprintf(
+          stderr,
+          "quality_study: `%s` is not understood; the head of benchmarks/quality_study.cpp says what is\n",
+          argv[i]);
+      return 2;
     }
+  if (study.scenes.empty())
+    for (const pipeline::GeneratorInfo& generator : pipeline::generators())
+      study.scenes.push_back(generator.name);
+  std::printf(
+      "# Quality\n\n%dx%d, no shadow map, against %d samples a pixel traced by rays; sRGB values in [0,1].\n",
+      study.width_px, study.height_px, study.samples);
+  try {
+    for (const std::string& name : study.scenes) run(name, study);
   } catch (const InputError& error) {
     return report(error);
   }
