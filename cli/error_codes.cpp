@@ -71,6 +71,10 @@ constexpr ErrorCode kCodes[] = {
     {"T101", "lists overflowed",
      "Per-pixel lists had too little memory, or were longer than the resolve reads: the image is "
      "incomplete."},
+    {"T102", "an aggregate's place is left empty",
+     "Mixed samples: the color samples of a target divide its raster samples, so three aggregates are stored "
+     "as "
+     "four. The image is not affected; memory and its bandwidth are those of four."},
     {"T005", "an image is no scene",
      "Techniques that draw need a scene. An image file stands for a finished frame: only filters apply to "
      "it."},

@@ -125,6 +125,13 @@ Json result_json(const PointResult& point, const RunPlan& plan, const std::strin
   return json;
 }
 
+/// Samples of a pixel that the aggregates' blended targets have; 0 without such targets.
+int aggregate_samples(const WorkTrace& trace) {
+  for (const PassWork& pass : trace.passes)
+    if (pass.name == "generate" && !pass.color_targets.empty()) return pass.color_targets.front().samples;
+  return 0;
+}
+
 std::vector<Diagnostic> result_warnings(const PointResult& point) {
   std::vector<Diagnostic> warnings;
   const TechniqueCounters n = total(point.emulation->trace).technique;
@@ -140,6 +147,21 @@ std::vector<Diagnostic> result_warnings(const PointResult& point) {
     warn(fmt::format("{}: the lists of {} pixels are longer than the resolve reads", name,
                      n.sss_truncated_pixels),
          "list_cap reads up to 64");
+  if (const auto& [info, parameters] = point.technique->base(); info->id == "agaa") {
+    const int aggregates = 1 + static_cast<int>(parameters.at("c"));  // the index of 1|2|3|4
+    const int samples = aggregate_samples(point.emulation->trace);
+    if (samples > aggregates)
+      warnings.push_back(
+          {Severity::note,
+           "T102",
+           fmt::format("{}: color samples divide raster samples: {} aggregates take the memory "
+                       "of {}",
+                       name, aggregates, samples),
+           {},
+           {},
+           {},
+           "accumulate=atomics stores them without a gap"});
+  }
   return warnings;
 }
 

@@ -27,7 +27,7 @@ Table summary_table(std::vector<std::vector<Cell>> rows);
 /// "1.23 ms [1.10, 1.36] calibrated", "1.23 ms uncalibrated".
 std::string headline_time(const FrameTiming& timing);
 
-/// What makes the image of a point less than its technique promises.
+/// What makes the image of a point less than its technique promises, or its memory more than it asks for.
 std::vector<Diagnostic> result_warnings(const PointResult& point);
 
 /// Two sentences: the time with its interval, and the pass and unit that it goes to.

@@ -162,6 +162,20 @@ TEST_F(RunTest, SeveralTechniquesGiveOneSummary) {
             "log.txt manifest.json msaa4x@gtx470 msaa4x@gtx980 none@gtx470 none@gtx980 summary.csv");
 }
 
+TEST_F(RunTest, SaysThatThreeAggregatesTakeTheMemoryOfFour) {
+  const Outcome padded = run("-t agaa:c=3 --no-image --out padded"),
+                dense = run("-t agaa:c=3,accumulate=atomics --no-image --out dense"),
+                even = run("-t agaa:c=4 --no-image --out even");
+  EXPECT_EQ(padded.status, 0) << padded.err;
+  EXPECT_NE(
+      padded.err.find("note[T102]: agaa:c=3: color samples divide raster samples: 3 aggregates take the "
+                      "memory of 4"),
+      std::string::npos)
+      << padded.err;
+  for (const Outcome& quiet : {dense, even})
+    EXPECT_EQ(quiet.err.find("T102"), std::string::npos) << quiet.err;
+}
+
 // The frame below is that of msaa8x; what selective supersampling lights beyond it counts like any other
 // light.
 TEST_F(RunTest, FurtherSamplesCountAsShaded) {
