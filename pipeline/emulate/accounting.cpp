@@ -9,26 +9,41 @@ struct BlockLanes {
   std::array<std::uint64_t, kSubgroupWidths.size()> issued{};
 };
 
-BlockLanes sum_trips(const std::array<std::int32_t, kBatchLanes>& trips, std::uint64_t valid_lanes) {
-  BlockLanes sum;
-  std::array<std::int32_t, kBatchLanes / 8> most{};
-  for (std::size_t lane = 0; lane < kBatchLanes; ++lane) {
-    const std::int32_t n = trips[lane];
-    sum.active += static_cast<std::uint64_t>(n);
-    most[lane / 8] = std::max(most[lane / 8], n);
+/// Lanes of a batch that run, in groups of the narrowest subgroup's width.
+struct ValidGroups {
+  static constexpr std::size_t kWidth = kSubgroupWidths[0], kCount = kBatchLanes / kWidth;
+  std::array<std::uint64_t, kCount> lanes;  ///< that run, of each
+  std::size_t used = 0;                     ///< groups up to the last that has one
+
+  explicit ValidGroups(std::uint64_t valid_lanes) {
+    for (std::size_t g = 0; g < kCount; ++g) {
+      lanes[g] = static_cast<std::uint64_t>(__builtin_popcountll(valid_lanes >> (g * kWidth) & 0xff));
+      if (lanes[g] != 0) used = g + 1;
+    }
   }
-  for (std::size_t w = 0; w < kSubgroupWidths.size(); ++w) {
-    const int width = kSubgroupWidths[w];
-    for (int first = 0; first < kBatchLanes; first += width) {
-      std::int32_t highest = 0;
-      for (int group = first / 8; group < (first + width) / 8; ++group)
-        highest = std::max(highest, most[static_cast<std::size_t>(group)]);
-      const std::uint64_t in_subgroup =
-          width == 64 ? valid_lanes : valid_lanes >> first & ((std::uint64_t{1} << width) - 1);
-      // A subgroup that the batch does not fill is charged for its share: the hardware fills it with other
-      // quads.
-      sum.issued[w] +=
-          static_cast<std::uint64_t>(highest) * static_cast<std::uint64_t>(__builtin_popcountll(in_subgroup));
+};
+
+BlockLanes sum_trips(const std::array<std::int32_t, kBatchLanes>& trips, const ValidGroups& valid) {
+  constexpr std::size_t kWidth = ValidGroups::kWidth;
+  BlockLanes sum;
+  std::array<std::uint64_t, ValidGroups::kCount> most{}, lanes = valid.lanes;
+  for (std::size_t g = 0; g < valid.used; ++g) {
+    std::int32_t all = 0, highest = 0;
+    for (std::size_t lane = g * kWidth; lane < (g + 1) * kWidth; ++lane) {
+      all += trips[lane];
+      highest = std::max(highest, trips[lane]);
+    }
+    sum.active += static_cast<std::uint64_t>(all);
+    most[g] = static_cast<std::uint64_t>(highest);
+  }
+  // A subgroup that the batch does not fill is charged for its share: the hardware fills it with other quads.
+  std::size_t groups = ValidGroups::kCount;
+  for (std::uint64_t& issued : sum.issued) {
+    for (std::size_t g = 0; g < groups; ++g) issued += most[g] * lanes[g];
+    groups /= 2;
+    for (std::size_t g = 0; g < groups; ++g) {
+      most[g] = std::max(most[2 * g], most[2 * g + 1]);
+      lanes[g] = lanes[2 * g] + lanes[2 * g + 1];
     }
   }
   return sum;
@@ -85,10 +100,12 @@ void account_blocks(const BlockTrips& blocks, const BlockOps& ops, int block_cou
   all.active = static_cast<std::uint64_t>(__builtin_popcountll(valid_lanes));
   all.issued.fill(all.active);
   charge(ops[0], all, counters);
+  if (blocks.used == 0) return;
+  const ValidGroups valid(valid_lanes);
   for (int block = 1; block < block_count; ++block) {
     if ((blocks.used >> block & 1u) == 0) continue;
     charge(ops[static_cast<std::size_t>(block)],
-           sum_trips(blocks.trips[static_cast<std::size_t>(block)], valid_lanes), counters);
+           sum_trips(blocks.trips[static_cast<std::size_t>(block)], valid), counters);
   }
 }
 

@@ -1,5 +1,6 @@
 // The hot loop: one screen bin's triangles through raster, depth, shading and color, on every vector target.
 #include "pipeline/emulate/pass_context.h"
+#include "pipeline/emulate/primitive_setup.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,6 +41,10 @@ class BinRunner : private BinShading {
       const std::uint32_t last = item.bin_start[slot + 1];
       if (first == last) continue;
       start_draw(c_.draws[item.draw]);
+      if (!item.points.empty()) {
+        rasterize_points(item, segment, first, last);
+        continue;
+      }
       for (std::uint32_t i = first; i < last; ++i) {
         if (i + kTrianglesAhead < last) prefetch(item.triangles[item.binned[i + kTrianglesAhead]]);
         rasterize(item.triangles[item.binned[i]], segment, item);
@@ -95,6 +100,61 @@ class BinRunner : private BinShading {
     start_coverage();
     ordered_ = w_.late_z || (w_.program != nullptr && w_.program->writes_storage);
     for (const BlendState& b : w_.state->blend) ordered_ = ordered_ || b.enabled || b.write_mask != 0xf;
+  }
+
+  void rasterize_points(const GeometryItem& item, const Segment& segment, std::uint32_t first,
+                        std::uint32_t last) {
+    const DrawInfo& draw = c_.draws[item.draw];
+    const SetupRules rules = setup_rules(c_, draw);
+    const std::int32_t half = point_half(*w_.state);
+    const bool one_pixel = half == kSubpixelUnits / 2 && positions_ == 1 && !rules.conservative;
+    const bool direct = one_pixel && c_.depth == nullptr && !w_.late_z && !keeps_primitive_masks_ &&
+                        w_.program != nullptr && !w_.program->writes_depth;
+    for (std::uint32_t i = first; i < last; ++i) {
+      const RasterPoint& p = item.points[item.binned[i]];
+      const PointPixel pixel(p, rules);
+      if (direct && pixel.one_tile) {
+        append_point(p, pixel, segment, item);
+        continue;
+      }
+      for (const bool upper : {true, false}) {
+        RasterTriangle& t = w_.point_halves[w_.next_half];
+        set_up_point(p, half, upper, rules, t);
+        t.draw = item.draw;
+        rasterize(t, segment, item);
+        keep_half(t);
+      }
+    }
+  }
+
+  /// The point's fragment, without edges and tests: what `rasterize` makes of both halves.
+  void append_point(const RasterPoint& p, const PointPixel& pixel, const Segment& segment,
+                    const GeometryItem& item) {
+    w_.current_chunk = p.chunk;
+    w_.tracker.start_primitive(p.primitive);
+    PassCounters& n = w_.counters();
+    n.raster.visited_tiles += pixel.visits();
+    n.raster.covered_samples += 1;
+    n.stats.samples_passed += 1;
+    n.raster.fragments += 1;
+    n.raster.quads += 1;
+    n.raster.partial_quads += 1;
+    const int x = pixel.x & ~7, y = pixel.y & ~7, lane = lane_of(pixel.x & 7, pixel.y & 7);
+    const int block = tile_number(x, y), quad = lane / 4;
+    if (ordered_ && holds(block, quad)) flush();
+    RasterTriangle& t = w_.point_halves[w_.next_half];
+    set_point_planes(p, pixel, t);
+    const std::size_t q = place_quad(&t, &segment, &item, x, y, block, quad);
+    w_.samples[q].masks[0] = static_cast<std::uint8_t>(1 << lane % 4);
+    keep_half(t);
+    if (w_.batch.quad_count == kBatchQuads) flush();
+  }
+
+  /// A half that the batch has quads of stays until they are shaded: no more than one for each of its quads.
+  void keep_half(const RasterTriangle& t) {
+    const auto quads = static_cast<std::size_t>(w_.batch.quad_count);
+    if (quads != 0 && w_.batch.triangle[quads - 1] == &t)
+      w_.next_half = (w_.next_half + 1) % (kBatchQuads + 1);
   }
 
   void rasterize(const RasterTriangle& t, const Segment& segment, const GeometryItem& item) {

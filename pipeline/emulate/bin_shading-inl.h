@@ -162,6 +162,18 @@ class BinShading : protected BinColor {
 
   void append_quad(const RasterTriangle* t, const Segment* segment, const GeometryItem* item, int x, int y,
                    int block, int quad, const std::uint64_t* masks) {
+    const std::size_t q = place_quad(t, segment, item, x, y, block, quad);
+    for (int s = 0; s < samples_; ++s)
+      w_.samples[q].masks[s] = static_cast<std::uint8_t>(masks[s] >> (4 * quad) & 15);
+    if (keeps_primitive_masks_)
+      for (int s = 0; s < positions_; ++s)
+        w_.primitive_samples[q].masks[s] =
+            static_cast<std::uint8_t>(primitive_masks_.lanes[s] >> (4 * quad) & 15);
+  }
+
+  /// Takes the batch's next quad, whose samples the caller sets.
+  std::size_t place_quad(const RasterTriangle* t, const Segment* segment, const GeometryItem* item, int x,
+                         int y, int block, int quad) {
     FragmentBatch& batch = w_.batch;
     const auto q = static_cast<std::size_t>(batch.quad_count++);
     batch.quad_x[q] = x + lane_x(4 * quad);
@@ -169,18 +181,13 @@ class BinShading : protected BinColor {
     batch.triangle[q] = t;
     w_.block[q] = block;
     w_.quad_in_block[q] = quad;
-    for (int s = 0; s < samples_; ++s)
-      w_.samples[q].masks[s] = static_cast<std::uint8_t>(masks[s] >> (4 * quad) & 15);
-    if (keeps_primitive_masks_)
-      for (int s = 0; s < positions_; ++s)
-        w_.primitive_samples[q].masks[s] =
-            static_cast<std::uint8_t>(primitive_masks_.lanes[s] >> (4 * quad) & 15);
-    if (t == nullptr) return;
+    if (t == nullptr) return q;
     batch.primitive[q] = t->primitive;
     batch.front_facing[q] = t->front_facing != w_.draw->mirrored;
     const auto stride = static_cast<std::uint32_t>(w_.draw->batch->raster_scalars());
     for (std::size_t v = 0; v < 3; ++v)
       batch.varyings[v][q] = varyings_of(t->vertex[v], stride, *segment, *item);
+    return q;
   }
 
   static const float* varyings_of(std::uint32_t vertex, std::uint32_t stride, const Segment& segment,

@@ -1,5 +1,7 @@
 #include "pipeline/emulate/binning.h"
 
+#include "pipeline/emulate/primitive_setup.h"
+
 namespace hwsim::pipeline {
 namespace {
 
@@ -24,19 +26,43 @@ void for_each_bin(const PassContext& context, const RasterTriangle& t, Body&& bo
         body(static_cast<std::size_t>((t.layer * context.bins_y + y) * context.bins_x + x));
 }
 
-}  // namespace
-
-// A counting sort of (bin, triangle) pairs.
-void bin_triangles(const PassContext& context, GeometryItem& item) {
+// A counting sort of (bin, number) pairs; `each` hands on the bins of a number.
+template <class Each>
+void sort_into_bins(const PassContext& context, std::size_t count, GeometryItem& item, Each&& each) {
   const auto bins = static_cast<std::size_t>(context.bins_x * context.bins_y) * context.viewports.size();
   item.bin_start.assign(bins + 1, 0);
-  for (const RasterTriangle& t : item.triangles)
-    for_each_bin(context, t, [&](std::size_t b) { item.bin_start[b + 1] += 1; });
+  for (std::uint32_t i = 0; i < count; ++i) each(i, [&](std::size_t b) { item.bin_start[b + 1] += 1; });
   for (std::size_t b = 0; b < bins; ++b) item.bin_start[b + 1] += item.bin_start[b];
   item.binned.resize(item.bin_start[bins]);
   std::vector<std::uint32_t> next(item.bin_start.begin(), item.bin_start.end() - 1);
-  for (std::uint32_t i = 0; i < item.triangles.size(); ++i)
-    for_each_bin(context, item.triangles[i], [&](std::size_t b) { item.binned[next[b]++] = i; });
+  for (std::uint32_t i = 0; i < count; ++i) each(i, [&](std::size_t b) { item.binned[next[b]++] = i; });
+}
+
+}  // namespace
+
+void bin_triangles(const PassContext& context, GeometryItem& item) {
+  sort_into_bins(context, item.triangles.size(), item,
+                 [&](std::uint32_t i, auto&& body) { for_each_bin(context, item.triangles[i], body); });
+}
+
+void bin_points(const PassContext& context, GeometryItem& item) {
+  const DrawInfo& draw = context.draws[item.draw];
+  const SetupRules rules = setup_rules(context, draw);
+  const std::int32_t half = point_half(draw.batch->state);
+  sort_into_bins(context, item.points.size(), item, [&](std::uint32_t i, auto&& body) {
+    const RasterPoint& p = item.points[i];
+    PixelRectangle r;
+    find_point_bounds(p, half, rules, r);
+    const int left = r.min_x / kBinPx, top = r.min_y / kBinPx;
+    if (left == r.max_x / kBinPx && top == r.max_y / kBinPx)
+      return body(static_cast<std::size_t>(top * context.bins_x + left));
+    RasterTriangle halves[2];
+    for (int h = 0; h < 2; ++h) set_up_point(p, half, h == 0, rules, halves[h]);
+    for (int y = top; y <= r.max_y / kBinPx; ++y)
+      for (int x = left; x <= r.max_x / kBinPx; ++x)
+        if (touches_bin(halves[0], x, y) || touches_bin(halves[1], x, y))
+          body(static_cast<std::size_t>(y * context.bins_x + x));
+  });
 }
 
 }  // namespace hwsim::pipeline

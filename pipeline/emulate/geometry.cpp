@@ -15,6 +15,7 @@ VertexSource source_of(const Segment& segment, const DrawInfo& draw, std::uint32
   const std::size_t local = draw_number - segment.first_draw;
   return {segment.vertices.data() + segment.vertex_base[local],
           segment.varyings.data() + segment.varying_base[local],
+          static_cast<std::size_t>(draw.batch->vertex->varying_scalars),
           static_cast<std::size_t>(draw.batch->vertex->varying_scalars)};
 }
 
@@ -117,7 +118,10 @@ void run_primitives(const PassContext& context, Segment& segment, int jobs, std:
       shade_primitives(context, segment, item, worker);
     else
       assemble(context, segment, item, worker.chunks);
-    bin_triangles(context, item);
+    if (item.points.empty())
+      bin_triangles(context, item);
+    else
+      bin_points(context, item);
   });
 }
 
@@ -129,7 +133,7 @@ bool next_items(const PassContext& context, Segment& segment) {
   const std::size_t built = segment.last_item - segment.first_item;
   std::size_t triangles = 0;
   for (std::size_t i = segment.first_item; i < segment.last_item; ++i) {
-    triangles += segment.items[i].triangles.size();
+    triangles += segment.items[i].triangles.size() + 2 * segment.items[i].points.size();
     GeometryItem spent;  // gives its memory back
     std::swap(spent, segment.items[i]);
   }

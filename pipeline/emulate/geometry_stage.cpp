@@ -27,20 +27,20 @@ class LaneOutput {
         item_(item),
         program_(*draws.geometry),
         tessellated_(draws.tessellated_points),
-        stride_(static_cast<std::size_t>(program_.varying_scalars)) {}
+        scalars_(static_cast<std::size_t>(program_.varying_scalars)) {}
 
   void add(const GeometryBatch& batch, std::size_t lane, std::uint32_t primitive, PassCounters& n) {
     const auto count = static_cast<std::size_t>(batch.vertex_count[lane]);
     if (count == 0) return;
     vertices_.clear();
-    varyings_.clear();
     for (std::size_t i = 0; i < count; ++i) {
       const float* vertex = batch.vertex(lane, i);
       const float clip[4] = {vertex[0], vertex[1], vertex[2], vertex[3]};
       vertices_.push_back(place_vertex(clip, band_, context_.width, context_.height));
-      varyings_.insert(varyings_.end(), vertex + 4, vertex + 4 + stride_);
     }
-    PrimitiveSetup setup(context_, {vertices_.data(), varyings_.data(), stride_, true}, item_);
+    PrimitiveSetup setup(
+        context_, {vertices_.data(), batch.vertex(lane, 0) + 4, batch.scalars_per_vertex(), scalars_, true},
+        item_);
     setup.start_primitive(primitive, n);
     const std::uint64_t primitives = program_.output == GeometryOutput::points
                                          ? add_points(setup, count)
@@ -75,9 +75,8 @@ class LaneOutput {
   GeometryItem& item_;
   const GeometryProgram& program_;
   bool tessellated_;
-  std::size_t stride_;
+  std::size_t scalars_;
   std::vector<ShadedVertex> vertices_;
-  std::vector<float> varyings_;
 };
 
 }  // namespace

@@ -52,6 +52,9 @@ struct BinWorker {
       primitive_samples;                              ///< before depth and stencil, where they are asked for
   FragmentBatch sample_batch;                         ///< sample-rate shading: the quads that have the sample
   std::array<std::int32_t, kBatchQuads> sample_quad;  ///< of each quad of sample_batch: its number in `batch`
+  /// Halves of points, for the quads of `batch`, and one more that is set up.
+  std::array<RasterTriangle, kBatchQuads + 1> point_halves;
+  std::size_t next_half = 0;
 
   ResourceView resources;  ///< of the pass, with the trackers of this worker
   AccessTracker tracker;

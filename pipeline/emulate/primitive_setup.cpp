@@ -10,6 +10,8 @@ bool in_guard_band(const double* p, const GuardBand& band) {
          p[1] >= band.min_y * p[3] && p[1] <= band.max_y * p[3];
 }
 
+}  // namespace
+
 SetupRules setup_rules(const PassContext& c, const DrawInfo& draw) {
   const GeometryProgram* geometry = draw.batch->geometry;
   const bool triangles = geometry != nullptr ? geometry->output == GeometryOutput::triangle_strip
@@ -24,8 +26,6 @@ SetupRules setup_rules(const PassContext& c, const DrawInfo& draw) {
           c.sample_max_y,
           draw.batch->state.raster.conservative};
 }
-
-}  // namespace
 
 ScreenVertex to_screen(const double* p, int width_px, int height_px) {
   const double inv_w = 1.0 / p[3];
@@ -85,14 +85,15 @@ void PrimitiveSetup::cull_outside() {
 }
 
 std::uint32_t PrimitiveSetup::own_vertices() const {
-  return static_cast<std::uint32_t>(source_.stride == 0 ? 0 : item_.clipped_varyings.size() / source_.stride);
+  return static_cast<std::uint32_t>(source_.scalars == 0 ? 0
+                                                         : item_.clipped_varyings.size() / source_.scalars);
 }
 
 std::uint32_t PrimitiveSetup::kept_vertex(std::uint32_t v) {
   if (!source_.temporary) return v;
   const std::uint32_t kept = own_vertices() | kClippedVertexBit;
   const float* from = source_.varyings + v * source_.stride;
-  item_.clipped_varyings.insert(item_.clipped_varyings.end(), from, from + source_.stride);
+  item_.clipped_varyings.insert(item_.clipped_varyings.end(), from, from + source_.scalars);
   return kept;
 }
 
@@ -119,7 +120,7 @@ void PrimitiveSetup::add_clipped(const Vertices& v) {
 }
 
 void PrimitiveSetup::append_varyings(const Vertices& v, const std::array<double, 3>& weights) {
-  for (std::size_t k = 0; k < source_.stride; ++k) {
+  for (std::size_t k = 0; k < source_.scalars; ++k) {
     double value = 0.0;
     for (std::size_t i = 0; i < 3; ++i) value += weights[i] * source_.varyings[v[i] * source_.stride + k];
     item_.clipped_varyings.push_back(static_cast<float>(value));
@@ -151,21 +152,21 @@ void PrimitiveSetup::finish(SetupResult result, const Vertices& v, RasterTriangl
   item_.triangles.push_back(t);
 }
 
-void PrimitiveSetup::count(SetupResult result) {
+void PrimitiveSetup::count(SetupResult result, std::uint64_t triangles) {
   SetupCounters& n = counters_->setup;
-  n.in_primitives += 1;
+  n.in_primitives += triangles;
   switch (result) {
     case SetupResult::backface:
-      n.culled_backface_primitives += 1;
+      n.culled_backface_primitives += triangles;
       break;
     case SetupResult::zero_area:
-      n.culled_zero_area_primitives += 1;
+      n.culled_zero_area_primitives += triangles;
       break;
     case SetupResult::sample_miss:
-      n.culled_sample_miss_primitives += 1;
+      n.culled_sample_miss_primitives += triangles;
       break;
     case SetupResult::drawn:
-      n.out_primitives += 1;
+      n.out_primitives += triangles;
       break;
   }
 }

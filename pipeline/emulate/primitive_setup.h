@@ -16,9 +16,14 @@ ShadedVertex place_vertex(const float (&clip)[4], const GuardBand& band, int wid
 struct VertexSource {
   const ShadedVertex* vertices = nullptr;
   const float* varyings = nullptr;  ///< of vertex v: varyings + v * stride
-  std::size_t stride = 0;
+  std::size_t stride = 0, scalars = 0;
   bool temporary = false;  ///< varyings are copied to the item, where shading finds them later
 };
+
+SetupRules setup_rules(const PassContext& context, const DrawInfo& draw);
+
+/// Half the size of a state's points, 1/256 px.
+std::int32_t point_half(const PipelineState& state);
 
 /// Clips, culls and sets up the primitives of one draw, and appends what is left to an item.
 class PrimitiveSetup {
@@ -34,6 +39,7 @@ class PrimitiveSetup {
 
  private:
   using Vertices = std::array<std::uint32_t, 3>;
+  void keep_point(const ScreenVertex& center, std::uint32_t v);
   void add_quad(const std::array<ScreenVertex, 4>& corner, const std::array<std::uint32_t, 4>& v);
   void add_clipped(const Vertices& v);
   ClipVertex clip_vertex(std::uint32_t v, std::size_t corner) const;
@@ -43,7 +49,7 @@ class PrimitiveSetup {
   void append_varyings(const Vertices& v, const std::array<double, 3>& weights);
   void set_up(const ScreenVertex (&screen)[3], const Vertices& v);
   void finish(SetupResult result, const Vertices& v, RasterTriangle& triangle);
-  void count(SetupResult result);
+  void count(SetupResult result, std::uint64_t triangles = 1);
 
   const PassContext& c_;
   const DrawInfo& draw_;

@@ -58,8 +58,10 @@ struct GeometryItem {
   bool outside = false;                                    ///< no part of it is in the view volume
 
   std::vector<RasterTriangle> triangles;
+  std::vector<RasterPoint> points;  ///< of a draw of points, in place of triangles
   std::vector<float> clipped_varyings;
-  std::vector<std::uint32_t> binned;  ///< triangle numbers, sorted by bin, in submission order within a bin
+  std::vector<std::uint32_t>
+      binned;  ///< triangle or point numbers, sorted by bin, in submission order within a bin
   std::vector<std::uint32_t> bin_start;  ///< bins + 1 offsets into `binned`
 };
 

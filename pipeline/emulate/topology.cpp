@@ -1,4 +1,5 @@
-// Points and line strips become quadrilaterals in screen space, two triangles each.
+// Points and line strips become quadrilaterals in screen space, two triangles each; those of a point are set
+// up where they are rasterized.
 #include <algorithm>
 #include <cmath>
 
@@ -16,12 +17,16 @@ void PrimitiveSetup::add_quad(const std::array<ScreenVertex, 4>& corner,
   }
 }
 
+std::int32_t point_half(const PipelineState& state) {
+  return static_cast<std::int32_t>(std::lround(state.raster.primitive_size_px * 0.5f * kSubpixelUnits));
+}
+
 void PrimitiveSetup::add_point(std::uint32_t v) {
   counters_->stats.clipping_invocations += 1;
   const ShadedVertex& vertex = source_.vertices[v];
   if (vertex.outcode != 0) return cull_outside();  // by its center, as Direct3D does
-  const auto half = static_cast<std::int32_t>(
-      std::lround(draw_.batch->state.raster.primitive_size_px * 0.5f * kSubpixelUnits));
+  if (c_.viewports.size() == 1) return keep_point(vertex.screen, v);
+  const std::int32_t half = point_half(draw_.batch->state);
   std::array<ScreenVertex, 4> corner;
   corner.fill(vertex.screen);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -30,6 +35,19 @@ void PrimitiveSetup::add_point(std::uint32_t v) {
   }
   const std::uint32_t kept = kept_vertex(v);
   add_quad(corner, {kept, kept, kept, kept});
+}
+
+// Both triangles have the square's bounding box, so that they share their fate.
+void PrimitiveSetup::keep_point(const ScreenVertex& center, std::uint32_t v) {
+  counters_->stats.clipping_primitives += 1;
+  const std::int32_t half = point_half(draw_.batch->state);
+  RasterPoint p{center.x, center.y, center.z, center.inv_w, 0, primitive_ / c_.chunk_primitives, primitive_};
+  PixelRectangle bounds;
+  if (half == 0) return count(SetupResult::zero_area, 2);
+  if (!find_point_bounds(p, half, rules_, bounds)) return count(SetupResult::sample_miss, 2);
+  count(SetupResult::drawn, 2);
+  p.vertex = kept_vertex(v);
+  item_.points.push_back(p);
 }
 
 void PrimitiveSetup::add_line(std::uint32_t a, std::uint32_t b) {

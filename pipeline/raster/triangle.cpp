@@ -46,9 +46,8 @@ struct PixelBounds {
   int first_x, last_x, first_y, last_y;
 };
 
-PixelBounds find_bounds(const ScreenVertex (&v)[3], const SetupRules& rules) {
-  const auto [low_x, high_x] = std::minmax({v[0].x, v[1].x, v[2].x});
-  const auto [low_y, high_y] = std::minmax({v[0].y, v[1].y, v[2].y});
+PixelBounds find_bounds(std::int32_t low_x, std::int32_t high_x, std::int32_t low_y, std::int32_t high_y,
+                        const SetupRules& rules) {
   if (rules.conservative)
     return {(low_x - 1) >> kSubpixelBits, high_x >> kSubpixelBits, (low_y - 1) >> kSubpixelBits,
             high_y >> kSubpixelBits};
@@ -58,14 +57,25 @@ PixelBounds find_bounds(const ScreenVertex (&v)[3], const SetupRules& rules) {
   return b;
 }
 
+PixelBounds find_bounds(const ScreenVertex (&v)[3], const SetupRules& rules) {
+  const auto [low_x, high_x] = std::minmax({v[0].x, v[1].x, v[2].x});
+  const auto [low_y, high_y] = std::minmax({v[0].y, v[1].y, v[2].y});
+  return find_bounds(low_x, high_x, low_y, high_y, rules);
+}
+
+bool clip_bounds(const PixelBounds& b, const SetupRules& rules, PixelRectangle& r) {
+  r = {std::max(b.first_x, 0), std::max(b.first_y, 0), std::min(b.last_x, rules.width_px - 1),
+       std::min(b.last_y, rules.height_px - 1)};
+  return r.min_x <= r.max_x && r.min_y <= r.max_y;
+}
+
 bool set_bounds(const PixelBounds& b, const SetupRules& rules, RasterTriangle& t) {
-  const int first_x = std::max(b.first_x, 0), first_y = std::max(b.first_y, 0);
-  const int last_x = std::min(b.last_x, rules.width_px - 1), last_y = std::min(b.last_y, rules.height_px - 1);
-  if (first_x > last_x || first_y > last_y) return false;
-  t.min_x = static_cast<std::int16_t>(first_x);
-  t.min_y = static_cast<std::int16_t>(first_y);
-  t.max_x = static_cast<std::int16_t>(last_x);
-  t.max_y = static_cast<std::int16_t>(last_y);
+  PixelRectangle r;
+  if (!clip_bounds(b, rules, r)) return false;
+  t.min_x = static_cast<std::int16_t>(r.min_x);
+  t.min_y = static_cast<std::int16_t>(r.min_y);
+  t.max_x = static_cast<std::int16_t>(r.max_x);
+  t.max_y = static_cast<std::int16_t>(r.max_y);
   return true;
 }
 
@@ -159,6 +169,48 @@ void set_up_triangle(const ScreenVertex (&v)[3], const SetupRules& rules,
     t.reference_x = static_cast<float>(reference_x) + static_cast<float>(viewports[l].x) / kSubpixelUnits;
     t.reference_y = static_cast<float>(reference_y) + static_cast<float>(viewports[l].y) / kSubpixelUnits;
   }
+}
+
+bool find_point_bounds(const RasterPoint& p, std::int32_t half, const SetupRules& rules,
+                       PixelRectangle& bounds) {
+  return clip_bounds(find_bounds(p.x - half, p.x + half, p.y - half, p.y + half, rules), rules, bounds);
+}
+
+void set_up_point(const RasterPoint& p, std::int32_t half, bool upper, const SetupRules& rules,
+                  RasterTriangle& t) {
+  const ScreenVertex corner[4] = {{p.x - half, p.y - half, p.z, p.inv_w},
+                                  {p.x + half, p.y - half, p.z, p.inv_w},
+                                  {p.x + half, p.y + half, p.z, p.inv_w},
+                                  {p.x - half, p.y + half, p.z, p.inv_w}};
+  const std::size_t second = upper ? 1 : 2;
+  set_up_triangle({corner[0], corner[second], corner[second + 1]}, rules, t);
+  std::fill(t.vertex, t.vertex + 3, p.vertex);
+  t.chunk = p.chunk;
+  t.primitive = p.primitive;
+}
+
+// make_plane with equal values at the vertices, and barycentric coordinates whose gradients are 1, 0 or -1.
+void set_point_planes(const RasterPoint& p, const PointPixel& pixel, RasterTriangle& t) {
+  constexpr double kPx = 1.0 / kSubpixelUnits;
+  const double w = p.inv_w;
+  const double x = w * ((p.x - kSubpixelUnits / 2) * kPx - pixel.x),  // corner 0 from the reference pixel
+      y = w * ((p.y - kSubpixelUnits / 2) * kPx - pixel.y);
+  t.reference_x = static_cast<float>(pixel.x);
+  t.reference_y = static_cast<float>(pixel.y);
+  t.z = {p.z, 0.0f, 0.0f};
+  t.inv_w = {p.inv_w, 0.0f, 0.0f};
+  if (pixel.upper) {
+    t.l1_w = {static_cast<float>(0.0 - x + y), p.inv_w, -p.inv_w};
+    t.l2_w = {static_cast<float>(0.0 - y), 0.0f, p.inv_w};
+  } else {
+    t.l1_w = {static_cast<float>(0.0 - x), p.inv_w, 0.0f};
+    t.l2_w = {static_cast<float>(0.0 + x - y), -p.inv_w, p.inv_w};
+  }
+  std::fill(t.vertex, t.vertex + 3, p.vertex);
+  t.front_facing = false;
+  t.layer = 0;
+  t.chunk = p.chunk;
+  t.primitive = p.primitive;
 }
 
 }  // namespace hwsim::pipeline

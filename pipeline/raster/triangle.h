@@ -50,6 +50,19 @@ struct RasterTriangle {
   bool front_facing;
 };
 
+/// A point: a square around its center, drawn as the triangles of its corners 0, 1, 2 and 0, 2, 3, clockwise
+/// from the top left. They are set up where they are rasterized: most points cover one sample.
+struct RasterPoint {
+  std::int32_t x, y;  ///< 24.8 fixed point
+  float z, inv_w;
+  std::uint32_t vertex, chunk, primitive;  ///< as a triangle's
+};
+
+/// Pixels of the viewport, both ends included.
+struct PixelRectangle {
+  int min_x, min_y, max_x, max_y;
+};
+
 enum class SetupResult { drawn, backface, zero_area, sample_miss };
 
 struct SetupRules {
@@ -67,5 +80,44 @@ SetupResult set_up_triangle(const ScreenVertex (&v)[3], const SetupRules& rules,
 void set_up_triangle(const ScreenVertex (&v)[3], const SetupRules& rules,
                      std::span<const ViewportShift> viewports, std::span<RasterTriangle> triangles,
                      std::span<SetupResult> results);
+
+/// Pixels that can hold covered samples of the square of `half` 1/256 px on each side of the center; false:
+/// none.
+bool find_point_bounds(const RasterPoint& point, std::int32_t half, const SetupRules& rules,
+                       PixelRectangle& bounds);
+
+/// The upper right half of the square, or the lower left one; of a point that can cover a sample.
+void set_up_point(const RasterPoint& point, std::int32_t half, bool upper, const SetupRules& rules,
+                  RasterTriangle& triangle);
+
+/// The one pixel that a point of a pixel's size covers, of patterns of one sample, and the half that has it.
+struct PointPixel {
+  int x, y;
+  bool upper;
+  bool one_tile;  ///< the pixels that can hold the sample, edges included, lie in one 8x8 tile
+
+  PointPixel(const RasterPoint& p, const SetupRules& rules) {
+    // Its sample is the only one at or right of (below) `low` and left of (above) low + 256.
+    const std::int32_t to_x = kSubpixelUnits / 2 + 16 * rules.sample_min_x,
+                       to_y = kSubpixelUnits / 2 + 16 * rules.sample_min_y;
+    const std::int32_t low_x = p.x - kSubpixelUnits / 2 - to_x, low_y = p.y - kSubpixelUnits / 2 - to_y;
+    x = (low_x + kSubpixelUnits - 1) >> kSubpixelBits;
+    y = (low_y + kSubpixelUnits - 1) >> kSubpixelBits;
+    // The diagonal falls to the right; samples on it belong to the half whose left edge it is.
+    upper = x * kSubpixelUnits + to_x - p.x >= y * kSubpixelUnits + to_y - p.y;
+    const int last_x = (low_x >> kSubpixelBits) + 1, last_y = (low_y >> kSubpixelBits) + 1;
+    one_tile = x >> 3 == last_x >> 3 && y >> 3 == last_y >> 3 && x >= 0 && y >= 0 && x < rules.width_px &&
+               y < rules.height_px;
+  }
+
+  /// Of the tile, by the coarse raster: by the half that has the sample, and by the other one unless the
+  /// diagonal cuts it off in the tile's corner.
+  std::uint64_t visits() const {
+    return upper ? ((x & 7) == 0 && (y & 7) == 7 ? 1 : 2) : ((x & 7) == 7 && (y & 7) == 0 ? 1 : 2);
+  }
+};
+
+/// set_up_point's planes for the half that covers the pixel; edges and bounds are left as they are.
+void set_point_planes(const RasterPoint& point, const PointPixel& pixel, RasterTriangle& triangle);
 
 }  // namespace hwsim::pipeline
