@@ -54,11 +54,11 @@ SymmetricMatrix<F> squared(const SymmetricMatrix<F>& m) {
           m.xx * m.xz + m.xy * m.yz + m.xz * m.zz, m.xy * m.xz + m.yy * m.yz + m.yz * m.zz};
 }
 
-/// The longest principal axis, as long as its standard deviation: a column of the 16th power.
-template <class F>
+/// The longest principal axis, as long as its standard deviation: a column of a power, 2^squarings.
+template <int kSquarings = 4, class F>
 Vec3<F> main_axis(const SymmetricMatrix<F>& m) {
   SymmetricMatrix<F> p = m;
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < kSquarings; ++i) {
     const F scale = F(1.0f) / max(p.xx + p.yy + p.zz, F(1e-25f));
     p = squared(SymmetricMatrix<F>{p.xx * scale, p.yy * scale, p.zz * scale, p.xy * scale, p.xz * scale,
                                    p.yz * scale});
@@ -129,11 +129,18 @@ F diffuse_of(const DiffuseLobe<F>& lobe, F mu) {
   return select(lobe.flat, cosine, filtered);
 }
 
+/// What a lobe of normals with exponent a reflects of a material with exponent s: its density in h,
+/// (a+1)/(2 pi) (n.h)^a, times the integral of the material's own lobe, (s+8)/(8 pi) 2 pi/(s+1). Toksvig's
+/// factor (1+a)/(1+s) on the normalized lobe; a = s where nothing spreads. This is what does not depend on a.
 template <class F>
-Vec3<F> blinn_phong_specular(const lanes::Surface<F>& s, const Vec3<F>& l) {
+F own_lobe_scale(F own_exponent) {
+  return (own_exponent + F(8.0f)) / (own_exponent + F(1.0f)) * F(0.0397887358f);
+}
+
+template <class F>
+Vec3<F> blinn_phong_specular(const lanes::Surface<F>& s, F own_scale, const Vec3<F>& l) {
   const Vec3<F> h = normalize(l + s.to_eye);
-  const F lobe =
-      (s.exponent + F(8.0f)) * F(0.0397887358f) * lanes::pow(max(dot(s.normal, h), F(0.0f)), s.exponent);
+  const F lobe = (s.exponent + F(1.0f)) * own_scale * lanes::pow(max(dot(s.normal, h), F(0.0f)), s.exponent);
   return s.specular * select(dot(s.normal, l) > F(0.0f), lobe, F(0.0f));
 }
 
@@ -176,16 +183,20 @@ Lean<F> make_lean(const F (&shape)[6]) {
   Lean<F> lean;
   lean.bx = shape[0];
   lean.by = shape[1];
-  lean.xx = max(shape[2] - lean.bx * lean.bx, F(1e-5f));
-  lean.yy = max(shape[3] - lean.by * lean.by, F(1e-5f));
+  // Half floats' rounding hides narrower lobes: what is left of the moments' difference is noise.
+  const auto variance = [](F moment, F mean) HWY_ATTR {
+    return max(moment - mean * mean, F(1e-5f) + mean * mean * F(1.0f / 512.0f));
+  };
+  lean.xx = variance(shape[2], lean.bx);
+  lean.yy = variance(shape[3], lean.by);
   lean.xy = shape[4] - lean.bx * lean.by;
   lean.det = max(lean.xx * lean.yy - lean.xy * lean.xy, F(1e-8f));
   return lean;
 }
 
 template <class F>
-Vec3<F> lean_specular(const lanes::Surface<F>& s, const Lean<F>& lean, const PixelFrame<F>& frame,
-                      const Vec3<F>& l, bool ggx) {
+Vec3<F> lean_specular(const lanes::Surface<F>& s, F own_scale, const Lean<F>& lean,
+                      const PixelFrame<F>& frame, const Vec3<F>& l, bool ggx) {
   const Vec3<F> h = normalize(l + s.to_eye);
   const F hz = dot(h, frame.z);
   const F inv_z = F(1.0f) / max(hz, F(1e-3f));
@@ -193,8 +204,8 @@ Vec3<F> lean_specular(const lanes::Surface<F>& s, const Lean<F>& lean, const Pix
   const F e = (x * x * lean.yy - F(2.0f) * x * y * lean.xy + y * y * lean.xx) / lean.det;
   const F density = exp2(e * F(-0.7213475204f)) * F(0.5f / kPi) * rsqrt(lean.det);
   const auto lit = (dot(s.normal, l) > F(0.0f)) & (hz > F(0.0f));
-  // A quarter: so the peak is that of the normalized Blinn-Phong lobe (techniques 4.8).
-  if (!ggx) return s.specular * select(lit, density * F(0.25f), F(0.0f));
+  // The peak density of variance 1/s is s/(2 pi): so the peak is that of the normalized Blinn-Phong lobe.
+  if (!ggx) return s.specular * select(lit, density * own_scale, F(0.0f));
   const F inv_z2 = inv_z * inv_z;
   const F lobe = density * inv_z2 * inv_z2 * smith_visibility(s, dot(s.normal, l));
   return schlick(s, dot(s.to_eye, h)) * select(lit, lobe, F(0.0f));
@@ -231,14 +242,16 @@ Sggx<F> make_sggx(const F (&shape)[6]) {
 }
 
 template <class F>
-Vec3<F> sggx_specular(const lanes::Surface<F>& s, const Sggx<F>& g, const Vec3<F>& l, bool ggx) {
+Vec3<F> sggx_specular(const lanes::Surface<F>& s, F own_scale, const Sggx<F>& g, const Vec3<F>& l, bool ggx) {
   const Vec3<F> h = normalize(l + s.to_eye);
   const F q = max(dot(h, multiply(g.adjugate, h)), F(1e-12f));
   const F ratio = g.det / q;  // D = 1 / (pi sqrt|S| (h S^-1 h)^2), S^-1 = adjugate / |S|
   const F density = ratio * ratio * F(1.0f / kPi) * rsqrt(g.det);
+  const auto lit = dot(s.normal, l) > F(0.0f);
+  // Blinn-Phong knows no masking, and no pi (shade/lighting-inl.h).
+  if (!ggx) return s.specular * select(lit, density * own_scale, F(0.0f));
   const F sigma = sqrt(max(dot(s.to_eye, multiply(g.s, s.to_eye)), F(1e-6f)));
-  const F lobe = select(dot(s.normal, l) > F(0.0f), density / (F(4.0f) * sigma) * F(kPi), F(0.0f));
-  return (ggx ? schlick(s, dot(s.to_eye, h)) : s.specular) * lobe;
+  return schlick(s, dot(s.to_eye, h)) * select(lit, density / (F(4.0f) * sigma) * F(kPi), F(0.0f));
 }
 
 /// What sampling the normals that a direction sees needs of an SGGX (Heitz et al. 2015, their supplement).

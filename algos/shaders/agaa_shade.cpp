@@ -52,7 +52,7 @@ class AggregateLight {
     surface_.specular = decode_specular(r.luma, r.cb, r.cr);
     surface_.emissive = {r.emissive, r.emissive, r.emissive};
     find_shape(r);
-    s_.uniform_branch(kLobeBlock, u_.diffuse != DiffuseFilter::off && u_.aggregate.ndf != Ndf::sggx,
+    s_.uniform_branch(kLobeBlock, u_.diffuse != DiffuseFilter::off && !by_visible_normals(),
                       [&]() HWY_ATTR { lobe_ = diffuse_lobe(diffuse_length_); });
     return light();
   }
@@ -166,14 +166,16 @@ class AggregateLight {
         break;
       case Ndf::sggx:
         sggx_ = make_sggx(r.shape);
-        surface_.normal = main_axis(sggx_.s);
+        surface_.normal = main_axis<6>(sggx_.s);
         surface_.normal = normalize(
             surface_.normal * select(dot(surface_.normal, surface_.to_eye) < F(0.0f), F(-1.0f), F(1.0f)));
         set_gloss(F(kLargestExponent));
         diffuse_length_ = F(1.0f);
-        find_visible_normals();
+        if (by_visible_normals()) find_visible_normals();
         break;
     }
+    F own = surface_.exponent;
+    bool separate = false;
     s_.uniform_branch(kGlossBlock, u_.aggregate.targets.geometric >= 0, [&]() HWY_ATTR {
       const F length = min(sqrt(dot(r.normal, r.normal)), F(1.0f - 1.0f / 65535.0f));
       if (u_.diffuse == DiffuseFilter::geometric) diffuse_length_ = length;
@@ -183,9 +185,46 @@ class AggregateLight {
       const F factor = length / max(length + s * (F(1.0f) - length), F(1e-6f));
       surface_.normal = normalize(r.normal);
       set_gloss(s * factor);
+      own = s;
+      separate = true;
     });
     const F of_samples = mean_normal_length(r);
     if (u_.diffuse == DiffuseFilter::samples) diffuse_length_ = of_samples;
+    set_own_scale(r, separate, own);
+  }
+
+  /// What of the lobe is the material's own. `own`: its exponent where that is stored; else of the whole
+  /// lobe, from which the geometry's spread is taken where it is known.
+  void set_own_scale(const AggregateRecord<F, I>& r, bool stored, F own) {
+    const bool spread_known = u_.diffuse == DiffuseFilter::samples || u_.diffuse == DiffuseFilter::geometric;
+    const F longest(1.0f - 1.0f / 65535.0f);
+    switch (u_.aggregate.ndf) {
+      case Ndf::toksvig:  // lengths multiply
+        if (spread_known && !stored)
+          own = max(own, exponent_of(min(length_ / max(diffuse_length_, F(1e-6f)), longest),
+                                     u_.aggregate.gloss_reference));
+        own_scale_ = own_lobe_scale(own);
+        break;
+      case Ndf::lean:  // variances add: the spread's as slopes have it at the mean normal's tilt
+        if (spread_known) {
+          const F tilt = lean_.bx * lean_.bx + lean_.by * lean_.by;
+          const F spread = (F(1.0f) / diffuse_length_ - F(1.0f)) * (F(1.0f) + tilt) * (F(2.0f) + tilt);
+          // Twice: what a few planes leave of it must not pass for a rough material.
+          own = F(2.0f) / max(lean_.xx + lean_.yy - F(2.0f) * spread, F(2.0f / kLargestExponent));
+        }
+        own_scale_ = F(0.25f) * (own + F(8.0f)) / max(own, F(0.125f));
+        break;
+      case Ndf::sggx: {  // the trace keeps the material's alpha^2 = 2/(s+2), whatever the normals
+        const F a2 = max((r.shape[0] + r.shape[1] + r.shape[2] - F(1.0f)) * F(0.5f), F(1e-4f));
+        own_scale_ = F(0.25f) * (F(1.0f) + F(3.0f) * a2);  // (s+8)/(s+2) of the density (s+2)/(2 pi)
+        break;
+      }
+    }
+  }
+
+  /// SGGX's own way to diffuse light, in which the gloss is folded, too.
+  bool by_visible_normals() const {
+    return u_.aggregate.ndf == Ndf::sggx && u_.diffuse == DiffuseFilter::folded;
   }
 
   /// Length of the mean of the samples' normals: what geometry alone spreads them. No trips where it is not
@@ -220,7 +259,7 @@ class AggregateLight {
   F diffuse(const Vec3<F>& l, const DiffuseLobe<F>& lobe) {
     const F mu = dot(surface_.normal, l);
     F result = max(mu, F(0.0f));
-    if (u_.aggregate.ndf == Ndf::sggx) {
+    if (by_visible_normals()) {
       F sum(0.0f);
       s_.loop(kNormalDotBlock, u_.visible_normals, mask_, [&](int i) HWY_ATTR {
         sum = sum + max(dot(normals_[static_cast<std::size_t>(i)], l), F(0.0f));
@@ -238,11 +277,11 @@ class AggregateLight {
     const Vec3<F> matte = surface.albedo * diffuse(l, lobe);
     switch (u_.aggregate.ndf) {
       case Ndf::toksvig:
-        return matte + (ggx ? ggx_specular(surface, l) : blinn_phong_specular(surface, l));
+        return matte + (ggx ? ggx_specular(surface, l) : blinn_phong_specular(surface, own_scale_, l));
       case Ndf::lean:
-        return matte + lean_specular(surface, lean_, frame_, l, ggx);
+        return matte + lean_specular(surface, own_scale_, lean_, frame_, l, ggx);
       case Ndf::sggx:
-        return matte + sggx_specular(surface, sggx_, l, ggx);
+        return matte + sggx_specular(surface, own_scale_, sggx_, l, ggx);
     }
     return matte;
   }
@@ -309,7 +348,7 @@ class AggregateLight {
   lanes::Surface<F> surface_{};
   Vec3<F> place_{}, spread_{};  ///< relative to the eye; standard deviation along the main axis
   SymmetricMatrix<F> covariance_{};
-  F length_{}, diffuse_length_{};
+  F length_{}, diffuse_length_{}, own_scale_{};
   DiffuseLobe<F> lobe_{};
   Lean<F> lean_{};
   Sggx<F> sggx_{};

@@ -289,6 +289,67 @@ TEST(Agaa, FlatLobesShineLikeTheMaterial) {
   EXPECT_LT(largest_difference(ggx, sggx), 20.0f / 255.0f);  // SGGX's diffuse light spreads by the roughness
 }
 
+// Nor does it take on color, or other light where it is rough, or where normals alone spread diffuse light.
+TEST(Agaa, RoughFlatLobesAreTheMaterialsOwn) {
+  pipeline::Scene rough = patches({{-5, 5, 0, {0.2f, 0.2f, 0.2f}}});
+  rough.materials.front().roughness = 0.93f;  // exponent 0.67
+  const auto scene = share(std::move(rough));
+  const pipeline::Image forward = render({scene, "none"}).color;
+  EXPECT_LT(largest_difference(forward, render({scene, "agaa"}).color), 1.5f / 255.0f);
+  EXPECT_LT(largest_difference(forward, render({scene, "agaa:ndf=sggx"}).color), 3.0f / 255.0f);
+  const auto glossy = share(patches({{-5, 5, 0, {0.2f, 0.2f, 0.2f}}}));
+  const pipeline::Image shiny = render({glossy, "none"}).color;
+  EXPECT_LT(largest_difference(shiny, render({glossy, "agaa:ndf=sggx"}).color), 8.0f / 255.0f);
+  EXPECT_LT(largest_difference(shiny, render({glossy, "agaa:ndf=lean"}).color), 8.0f / 255.0f);
+}
+
+// Parts of a pixel's weight leave gray reflectance gray: neutral chroma is a whole code at each.
+TEST(Agaa, GrayStaysGrayAtAnyWeight) {
+  const Planes chroma = planes_of(
+      {share(patches({{-0.81f, 0.13f, 0, glm::vec3(0.5f)}, {0.13f, 0.9f, 0.1f, glm::vec3(0.5f)}})), "agaa"},
+      "aggregate_chroma");
+  int partial = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      for (int a = 0; a < chroma.count; ++a) {
+        const glm::vec4& texel = chroma.at(x, y, a);
+        const int samples = bits_of(texel.w);
+        EXPECT_EQ(std::lround(texel.x * 255.0f), 16 * samples) << x << " " << y;
+        EXPECT_EQ(std::lround(texel.y * 255.0f), 16 * samples) << x << " " << y;
+        partial += samples % 8 != 0 ? 1 : 0;
+      }
+  EXPECT_GT(partial, 10);
+}
+
+// Seen and lit along the mean normal of slats: the lobe's density there times what the material reflects in
+// all, which does not grow with the normals' spread.
+TEST(Agaa, SpreadNormalsReflectNoMoreLight) {
+  std::vector<Patch> list;
+  const float pixel = 0.0725f;
+  for (int i = -20; i < 20; ++i)
+    list.push_back({pixel * 0.5f * static_cast<float>(i), pixel * 0.5f * static_cast<float>(i + 1), 0,
+                    glm::vec3(0.5f), (i & 1) != 0 ? 0.8f : -0.8f});
+  pipeline::Scene slats = patches(list);
+  for (pipeline::Material& m : slats.materials) m.metallic = 1.0f;  // no diffuse light
+  slats.lights.front().direction = glm::vec3(0.0f, 0.0f, -1.0f);
+  slats.ambient = glm::vec3(0.0f);
+  const Shot shot{share(std::move(slats)), "agaa:c=1"};
+  const Planes shape = planes_of(shot, "aggregate_shape");
+  const pipeline::Image image = render(shot).color;
+  const float own = 2.0f / std::pow(0.5f, 4.0f) - 2.0f;
+  int spread = 0;
+  for (int x = kWidth / 2 - 4; x < kWidth / 2 + 4; ++x) {
+    const glm::vec3 v(shape.at(x, kHeight / 2, 0));
+    const float length = glm::length(v), exponent = length / (1.0f - length);
+    if (exponent > 5.0f || v.z < 0.98f * length) continue;
+    ++spread;
+    const float expected =
+        0.5f * 0.8f * (exponent + 1.0f) * (own + 8.0f) / (own + 1.0f) / (8.0f * 3.14159265f);
+    EXPECT_NEAR(image.at(x, kHeight / 2).x, expected, 0.05f * expected) << x;
+  }
+  EXPECT_GT(spread, 0);
+}
+
 // Half-pixel slats of two slopes: their common lobe is wider than that of either.
 TEST(Agaa, MixedNormalsWidenTheLobe) {
   std::vector<Patch> list;
