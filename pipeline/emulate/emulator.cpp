@@ -10,6 +10,7 @@
 #include "pipeline/depth/depth_format.h"
 #include "pipeline/emulate/color_traffic.h"
 #include "pipeline/emulate/depth_traffic.h"
+#include "pipeline/emulate/frame_memory.h"
 #include "pipeline/emulate/geometry.h"
 #include "pipeline/emulate/material_views.h"
 #include "pipeline/emulate/pass_description.h"
@@ -21,7 +22,7 @@ namespace {
 
 constexpr std::uint64_t kFullScreenBands = 64;
 
-/// Runs the passes of one compiled graph in order. Images live from their first pass to their last.
+/// Runs the passes of one compiled graph in order.
 class FrameRunner {
  public:
   FrameRunner(const FrameGraph& graph, const CompiledGraph& compiled, const FunctionalConfig& functional,
@@ -32,9 +33,7 @@ class FrameRunner {
         options_(options),
         textures_(graph.scene()),
         materials_(graph.scene(), textures_),
-        images_(graph.images().size()),
-        buffers_(graph.buffers().size()),
-        cleared_(graph.images().size(), 0),
+        memory_(graph, compiled),
         workers_(static_cast<std::size_t>(std::max(1, options.jobs))),
         heat_blocks_x_((graph.width() + kBlockPx - 1) / kBlockPx) {
     const int heat_blocks_y = (graph.height() + kBlockPx - 1) / kBlockPx;
@@ -47,8 +46,8 @@ class FrameRunner {
       if (options_.progress)
         options_.progress(static_cast<double>(position) / static_cast<double>(compiled_.order.size()),
                           pass.name);
-      allocate(static_cast<int>(position));
-      PassWork work = describe(graph_, compiled_, static_cast<int>(position), cleared_);
+      memory_.allocate(static_cast<int>(position));
+      PassWork work = describe(graph_, compiled_, static_cast<int>(position), memory_.cleared());
       const auto start = std::chrono::steady_clock::now();
       const std::clock_t cpu_start = std::clock();
       run_pass(pass, work);
@@ -56,15 +55,15 @@ class FrameRunner {
       result.pass_wall_s.push_back(
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
       result.trace.passes.push_back(std::move(work));
-      if (options_.inspect) inspect(pass);
-      release(static_cast<int>(position));
+      if (options_.inspect) options_.inspect(pass, memory_.images());
+      memory_.release(static_cast<int>(position));
     }
     if (options_.progress) options_.progress(1.0, "");
     result.color = read_output();
     result.shading_heat = read_heat();
     result.skipped["frustum"] = skipped_clusters_;
     result.skipped["single_color_pixels"] = skipped_pixels_;
-    result.skipped["cleared_tiles"] = skipped_tiles_;
+    result.skipped["cleared_tiles"] = memory_.untouched_tiles();
     std::uint64_t passed = 0;
     for (const BinWorker& worker : workers_) {
       result.skipped["hidden_tiles"] += worker.hidden_tiles_skipped;
@@ -78,45 +77,7 @@ class FrameRunner {
   }
 
  private:
-  void inspect(const Pass& pass) const {
-    std::vector<const GpuImage*> images;
-    for (const std::unique_ptr<GpuImage>& i : images_) images.push_back(i.get());
-    options_.inspect(pass, images);
-  }
-
-  GpuImage& image(ImageId id) { return *images_[static_cast<std::size_t>(id.index)]; }
-
-  void allocate(int position) {
-    for (std::size_t i = 0; i < images_.size(); ++i) {
-      if (compiled_.images[i].first_pass != position) continue;
-      const ImageDesc& desc = graph_.images()[i];
-      images_[i] = std::make_unique<GpuImage>(desc.format, desc.width, desc.height, desc.samples, desc.layers,
-                                              desc.coverage_samples);
-      if (const RawImage* contents = graph_.contents({static_cast<int>(i)}))
-        upload_image(*contents, *images_[i]);
-    }
-    for (std::size_t i = 0; i < buffers_.size(); ++i)
-      if (compiled_.buffers[i].first_pass == position) {
-        const BufferDesc& desc = graph_.buffers()[i];
-        if (desc.contents) buffers_[i] = *desc.contents;
-        buffers_[i].resize(desc.words, 0);
-      }
-  }
-
-  void release(int position) {
-    for (std::size_t i = 0; i < images_.size(); ++i)
-      if (compiled_.images[i].last_pass == position && static_cast<int>(i) != graph_.output().index) {
-        if (images_[i]) count_untouched(*images_[i]);
-        images_[i].reset();
-      }
-    for (std::size_t i = 0; i < buffers_.size(); ++i)
-      if (compiled_.buffers[i].last_pass == position) std::vector<std::uint32_t>().swap(buffers_[i]);
-  }
-
-  /// Tiles that nothing has used since their clear.
-  void count_untouched(const GpuImage& image) {
-    skipped_tiles_ += static_cast<std::uint64_t>(std::count(image.cleared.begin(), image.cleared.end(), 1));
-  }
+  GpuImage& image(ImageId id) { return memory_.image(id); }
 
   void run_pass(const Pass& pass, PassWork& work) {
     switch (pass.kind) {
@@ -133,10 +94,7 @@ class FrameRunner {
         run_transfer(pass, work);
         break;
     }
-    for (const ImageId id : pass.color) cleared_[static_cast<std::size_t>(id.index)] = 0;
-    if (pass.depth && !pass.depth_read_only) cleared_[static_cast<std::size_t>(pass.depth.index)] = 0;
-    for (const ImageId id : pass.targets)
-      cleared_[static_cast<std::size_t>(id.index)] = pass.kind == PassKind::clear ? 1 : 0;
+    memory_.note_writes(pass);
   }
 
   PassContext make_context(const Pass& pass) {
@@ -183,7 +141,7 @@ class FrameRunner {
       resources.target_formats[i] = pass.target_view_of(graph_, i);
     }
     for (std::size_t i = 0; i < pass.storage.size(); ++i) {
-      std::vector<std::uint32_t>& words = buffers_[static_cast<std::size_t>(pass.storage[i].index)];
+      std::vector<std::uint32_t>& words = memory_.buffer(pass.storage[i]);
       resources.buffers[i] = words.data();
       resources.buffer_words[i] = words.size();
     }
@@ -395,7 +353,7 @@ class FrameRunner {
     GpuImage* source = pass.source ? &image(pass.source) : nullptr;
     if (source != nullptr && pass.kind == PassKind::copy) source->use_all(options_.jobs);
     for (GpuImage* target : targets) {
-      if (pass.kind == PassKind::clear) count_untouched(*target);
+      if (pass.kind == PassKind::clear) memory_.count_untouched(*target);
       if (pass.kind == PassKind::clear) clear_image(*target, pass);
       if (pass.kind == PassKind::clear && !options_.skip.cleared_tiles) target->start_all(options_.jobs);
       if (pass.kind == PassKind::copy) copy_image(*source, *target);
@@ -428,17 +386,14 @@ class FrameRunner {
   const EmulationOptions& options_;
   TextureStore textures_;
   MaterialViews materials_;
-  std::vector<std::unique_ptr<GpuImage>> images_;
-  std::vector<std::vector<std::uint32_t>> buffers_;
+  FrameMemory memory_;
   DepthPlaneView planes_;                           ///< of the pass at hand
   std::vector<SamplePosition> coverage_positions_;  ///< likewise
-  std::vector<char> cleared_;                       ///< images that nothing was drawn into since their clear
   std::vector<BinWorker> workers_;
   int heat_blocks_x_;
   std::vector<std::uint32_t> heat_;
   std::uint64_t skipped_clusters_ = 0;
   std::uint64_t skipped_pixels_ = 0;
-  std::uint64_t skipped_tiles_ = 0;
 };
 
 }  // namespace

@@ -49,6 +49,7 @@ class CountFragment {
     const F u = attr(k), v = attr(k + 1);
     return four(made(OpKind::texture, u, v));
   }
+  F sample_texture_alpha(const TextureView* texture, int k) { return sample_texture(texture, k).w; }
   Vec4<F> sample_texture_at(const TextureView*, const TextureSite<F>& at) {
     made(OpKind::output, at.du_dx, at.dv_dx);
     return four(made(OpKind::texture, at.u, at.v, at.du_dy));

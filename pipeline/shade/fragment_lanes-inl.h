@@ -124,13 +124,8 @@ class FragmentLanes : public LaneFlow {
   }
 
   /// Filtered texture at attribute scalars (k, k + 1); level of detail from the derivatives at pixel centers.
-  Vec4<F> sample_texture(const TextureView* texture, int k) {
-    const TextureSampler<F, I, M> sampler(*texture, batch_.resources->tracker, live_, first_);
-    const F uc = interpolate(k, batch_.b1_center.data(), batch_.b2_center.data());
-    const F vc = interpolate(k + 1, batch_.b1_center.data(), batch_.b2_center.data());
-    return sampler.sample(attr(k), attr(k + 1), ddx(uc), ddx(vc), ddy(uc), ddy(vc),
-                          batch_.tex_bilinear_probes);
-  }
+  Vec4<F> sample_texture(const TextureView* texture, int k) { return sample_texture_of<Vec4<F>>(texture, k); }
+  F sample_texture_alpha(const TextureView* texture, int k) { return sample_texture_of<F>(texture, k); }
 
   /// Filtered texture at coordinates of the shader's own, with their derivatives.
   Vec4<F> sample_texture_at(const TextureView* texture, const TextureSite<F>& at) {
@@ -256,6 +251,15 @@ class FragmentLanes : public LaneFlow {
   }
 
  private:
+  template <class Value>
+  Value sample_texture_of(const TextureView* texture, int k) {
+    const TextureSampler<F, I, M, Value> sampler(*texture, batch_.resources->tracker, live_, first_);
+    const F uc = interpolate(k, batch_.b1_center.data(), batch_.b2_center.data());
+    const F vc = interpolate(k + 1, batch_.b1_center.data(), batch_.b2_center.data());
+    return sampler.sample(attr(k), attr(k + 1), ddx(uc), ddx(vc), ddy(uc), ddy(vc),
+                          batch_.tex_bilinear_probes);
+  }
+
   std::uint64_t live_count() const {
     return static_cast<std::uint64_t>(__builtin_popcount(mask_bits(live_)));
   }

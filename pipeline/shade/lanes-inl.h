@@ -101,6 +101,7 @@ HWY_INLINE LaneF bits_to_float(LaneI a) { return LaneF(hn::BitCast(DF(), a.v)); 
 HWY_INLINE LaneI float_to_bits(LaneF a) { return LaneI(hn::BitCast(DI(), a.v)); }
 HWY_INLINE LaneF exp2(LaneF a) { return exp2_polynomial<LaneF, LaneI>(a); }
 HWY_INLINE LaneF log2(LaneF a) { return log2_polynomial<LaneF, LaneI>(a); }
+HWY_INLINE std::int32_t first_value(LaneI a) { return hn::GetLane(a.v); }
 HWY_INLINE bool any(LaneM m) { return !hn::AllFalse(DF(), m.v); }
 
 HWY_INLINE LaneF load(const float* p) { return LaneF(hn::LoadU(DF(), p)); }

@@ -82,6 +82,7 @@ inline ScalarI float_to_bits(ScalarF a) { return std::bit_cast<std::int32_t>(a.v
 inline ScalarF exp2(ScalarF a) { return exp2_polynomial<ScalarF, ScalarI>(a); }
 inline ScalarF log2(ScalarF a) { return log2_polynomial<ScalarF, ScalarI>(a); }
 inline ScalarF lookup(const float* table, ScalarI index) { return table[index.v]; }
+inline std::int32_t first_value(ScalarI a) { return a.v; }
 inline bool any(ScalarM m) { return m.v; }
 inline ScalarF gather(const float* base, ScalarI index) { return base[index.v]; }
 inline ScalarI gather(const std::int32_t* base, ScalarI index) { return base[index.v]; }

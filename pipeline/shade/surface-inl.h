@@ -43,7 +43,7 @@ typename S::F sample_alpha(S& s, int uv) {
   const MaterialView& m = s.material();
   F alpha(m.base_color[3]);
   s.uniform_branch(kBaseTextureBlock, m.base_color_texture != nullptr,
-                   [&]() HWY_ATTR { alpha = alpha * s.sample_texture(m.base_color_texture, uv).w; });
+                   [&]() HWY_ATTR { alpha = alpha * s.sample_texture_alpha(m.base_color_texture, uv); });
   return alpha;
 }
 

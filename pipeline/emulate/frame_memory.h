@@ -1,0 +1,41 @@
+#pragma once
+// The images and buffers of a frame, each from its first pass to its last.
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "pipeline/emulate/gpu_image.h"
+#include "pipeline/graph/frame_graph.h"
+
+namespace hwsim::pipeline {
+
+class FrameMemory {
+ public:
+  FrameMemory(const FrameGraph& graph, const CompiledGraph& compiled);
+
+  /// Before and after the pass at `position` of the order.
+  void allocate(int position);
+  void release(int position);
+
+  GpuImage& image(ImageId id) { return *images_[static_cast<std::size_t>(id.index)]; }
+  std::vector<std::uint32_t>& buffer(BufferId id) { return buffers_[static_cast<std::size_t>(id.index)]; }
+  /// By number; null: not alive.
+  std::vector<const GpuImage*> images() const;
+
+  void note_writes(const Pass& pass);
+  /// Of each image: whether nothing was drawn into it since its clear.
+  const std::vector<char>& cleared() const { return cleared_; }
+  /// Adds the image's tiles that nothing has used since their clear to `untouched_tiles`.
+  void count_untouched(const GpuImage& image);
+  std::uint64_t untouched_tiles() const { return untouched_tiles_; }
+
+ private:
+  const FrameGraph& graph_;
+  const CompiledGraph& compiled_;
+  std::vector<std::unique_ptr<GpuImage>> images_;
+  std::vector<std::vector<std::uint32_t>> buffers_;
+  std::vector<char> cleared_;
+  std::uint64_t untouched_tiles_ = 0;
+};
+
+}  // namespace hwsim::pipeline
