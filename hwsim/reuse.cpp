@@ -189,22 +189,9 @@ ReuseProfile analyze_reuse(std::vector<BlockAccess> accesses, BlockKinds kinds, 
   return profile;
 }
 
-namespace {
-/// As std::find, which looks at one element at a time.
-template <class Iterator>
-Iterator find_block(Iterator first, Iterator last, std::uint32_t block) {
-  constexpr std::ptrdiff_t kAtOnce = 16;
-  for (; last - first >= kAtOnce; first += kAtOnce) {
-    std::uint32_t equal = 0;
-    for (std::ptrdiff_t i = 0; i < kAtOnce; ++i) equal |= first[i] == block ? 1u : 0u;
-    if (equal != 0) break;
-  }
-  return std::find(first, last, block);
-}
-}  // namespace
-
 int RecentBlocks::missing_sizes(std::uint32_t block, std::uint32_t block_bytes) {
-  const auto found = find_block(latest_.begin(), latest_.end(), block);
+  if (!latest_.empty() && latest_.front() == block) return sizes_below(block_bytes);  // most often
+  const auto found = std::find(latest_.begin(), latest_.end(), block);
   const auto place = static_cast<std::size_t>(found - latest_.begin());
   const bool missing = found == latest_.end();
   if (missing && latest_.size() >= std::max<std::size_t>(4, (kWindowBytes / block_bytes) >> shift_))
