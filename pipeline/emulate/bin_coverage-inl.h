@@ -19,7 +19,9 @@ namespace hwsim::pipeline::HWY_NAMESPACE {
 class BinCoverage : protected BinDepth {
  protected:
   BinCoverage(const PassContext& context, int layer, BinWorker& worker)
-      : BinDepth(context, layer, worker), positions_(static_cast<int>(context.coverage_positions.size())) {}
+      : BinDepth(context, layer, worker),
+        positions_(static_cast<int>(context.coverage_positions.size())),
+        layout_(context.coverage_map == nullptr ? nullptr : &coverage_layout(samples_, positions_)) {}
 
   /// Blended fragments color what is there: positions keep their samples. So do draws without color.
   void start_coverage_map() {
@@ -100,13 +102,15 @@ class BinCoverage : protected BinDepth {
       count_map_bytes(0, was_whole ? 0 : 1);
       return;
     }
-    const CoverageWord after = passed == 0 ? hide_positions(before, samples_, positions_, covered, wins)
-                                           : insert_fragment(before, samples_, positions_, passed, covered,
-                                                             c_.pass->drop_orphans, wins);
+    const CoverageWord after =
+        passed == 0 ? hide_positions(before, *layout_, covered, wins)
+                    : insert_fragment(before, *layout_, passed, covered, c_.pass->drop_orphans, wins);
     count_map_bytes(1, after.word() != before.word() ? 1 : 0);
     image.coverage_whole[tile] &= ~bit;
     stored = after.word();
   }
+
+  const CoverageLayout* layout_;  ///< null without a map
 
   void count_map_bytes(std::uint64_t read_pixels, std::uint64_t written_pixels) {
     const std::uint64_t bytes = coverage_map_bytes(samples_, positions_);

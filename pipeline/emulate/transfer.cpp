@@ -49,17 +49,15 @@ HWY_INLINE Vec4<LaneF> sum_samples(const GpuImage& from, const std::int32_t* sou
 HWY_INLINE Vec4<LaneF> mean_of_positions(const GpuImage& from, const std::int32_t* source, int block,
                                          int first) {
   HWY_ALIGN float weight[kMaxSamples][kVectorLanes] = {};
-  HWY_ALIGN float valid[kVectorLanes] = {};
+  const CoverageLayout& layout = coverage_layout(from.samples, from.coverage_samples);
   const std::uint64_t whole = from.coverage_whole[static_cast<std::size_t>(block)];
   for (int i = 0; i < kVectorLanes; ++i) {
     const auto lane = static_cast<std::size_t>(first + i);
     const std::uint64_t stored = from.coverage_map[static_cast<std::size_t>(block) * kBlockLanes + lane];
     const CoverageWord map = (whole >> lane & 1) != 0 ? CoverageWord() : CoverageWord(stored);
     for (int q = 0; q < from.coverage_samples; ++q) {
-      const std::uint32_t sample = q < from.samples ? static_cast<std::uint32_t>(q) : map.at(q);
-      if (sample == kNoSample) continue;
+      const std::uint32_t sample = q < from.samples ? static_cast<std::uint32_t>(q) : layout.shown_at(map, q);
       weight[sample][i] += 1.0f;
-      valid[i] += 1.0f;
     }
   }
   Vec4<LaneF> sum{LaneF(0.0f), LaneF(0.0f), LaneF(0.0f), LaneF(0.0f)};
@@ -69,7 +67,7 @@ HWY_INLINE Vec4<LaneF> mean_of_positions(const GpuImage& from, const std::int32_
     const Vec4<LaneF> c = decode_texel<LaneF, LaneI>(from.format, words, srgb_decode_table().data());
     sum = sum + c * load(weight[s]);
   }
-  return sum * (LaneF(1.0f) / load(valid));  // never 0: each sample's own position names it
+  return sum * LaneF(1.0f / static_cast<float>(from.coverage_samples));
 }
 
 void resolve_block(const GpuImage& from, GpuImage& to, int block, std::uint64_t single) {

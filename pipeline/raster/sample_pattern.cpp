@@ -66,22 +66,22 @@ std::span<const SamplePosition> standard_sample_positions(int samples) {
 }
 
 std::vector<SamplePosition> coverage_positions(int samples, int positions) {
-  // Of all choices with a sample in each quarter of the pixel (two of two) those whose columns and rows, each
-  // in order, lie nearest to the standard pattern of as many samples, by squares.
-  constexpr std::uint32_t k2Of4 = 0x9, k4Of8 = 0x1d, k4Of16 = 0x4094, k8Of16 = 0xc1d3;
-  const std::uint32_t first = samples == 2 && positions == 4    ? k2Of4
-                              : samples == 4 && positions == 8  ? k4Of8
-                              : samples == 4 && positions == 16 ? k4Of16
-                              : samples == 8 && positions == 16 ? k8Of16
-                                                                : 0;
-  if (first == 0)
+  // Of the standard pattern for all positions, those that the samples' own pattern stands for: one each, with
+  // the least sum of squared distances.
+  constexpr std::uint32_t k2Of4 = 0x9, k4Of8 = 0x5c, k4Of16 = 0xc28, k8Of16 = 0x3c66;
+  const std::uint32_t replaced = samples == 2 && positions == 4    ? k2Of4
+                                 : samples == 4 && positions == 8  ? k4Of8
+                                 : samples == 4 && positions == 16 ? k4Of16
+                                 : samples == 8 && positions == 16 ? k8Of16
+                                                                   : 0;
+  if (replaced == 0)
     throw std::invalid_argument("no pattern of " + std::to_string(samples) + " samples among " +
                                 std::to_string(positions) + " positions");
-  std::vector<SamplePosition> ordered;
-  for (const bool sample : {true, false})
-    for (std::uint32_t i = 0; const P p : standard_sample_positions(positions))
-      if (((first >> i++ & 1u) != 0) == sample) ordered.push_back(p);
-  return ordered;
+  const std::span<const SamplePosition> own = standard_sample_positions(samples);
+  std::vector<SamplePosition> all(own.begin(), own.end());
+  for (std::uint32_t i = 0; const P p : standard_sample_positions(positions))
+    if ((replaced >> i++ & 1u) == 0) all.push_back(p);
+  return all;
 }
 
 MulticastPattern multicast_pattern(int samples) {

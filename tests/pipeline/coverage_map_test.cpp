@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include "pipeline/raster/sample_pattern.h"
 #include "support/frames.h"
@@ -24,7 +26,8 @@ std::shared_ptr<const Scene> triangles(const std::vector<glm::vec3>& positions) 
 /// The resolved red of the scene's triangles, each in the color of its number. With `coverage`: maps of as
 /// many positions; else `samples` at the positions given, in their order.
 struct Frame {
-  explicit Frame(std::shared_ptr<const Scene> scene, int samples, int coverage, bool drop_orphans = false)
+  explicit Frame(std::shared_ptr<const Scene> scene, int samples, int coverage, bool drop_orphans = false,
+                 const std::vector<SamplePosition>& at = {})
       : graph(std::move(scene), kSize, kSize) {
     const ImageId color = graph.add_image({"color", Format::r32_float, kSize, kSize, samples, 1, coverage});
     const ImageId depth = graph.add_image({"depth", Format::d32_float, kSize, kSize, samples});
@@ -40,6 +43,7 @@ struct Frame {
     batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>();
     batch.fragment = &test::primitive_program();
     batch.state.raster.cull = CullMode::none;
+    batch.state.raster.sample_positions = at;
     batch.state.depth = {true, true, Compare::less};
     batch.draws = {{0, 0}};
     pass.batches = {batch};
@@ -65,20 +69,40 @@ TEST(CoverageMap, TakesWholeBytesOfAPixel) {
   EXPECT_EQ(allocated_bytes(image), 1000u * (4 * 4 + 6));
 }
 
-TEST(CoverageMap, PositionsAreThoseOfTheStandardPatternInAnOrderOfItsOwn) {
+/// The least sum of squared distances between samples and positions, one each: over sets of positions taken
+/// by the first samples.
+int least_distance2(std::span<const SamplePosition> samples, std::span<const SamplePosition> positions) {
+  constexpr int kNever = 1 << 20;
+  std::vector<int> least(std::size_t{1} << positions.size(), kNever);
+  least[0] = 0;
+  int best = kNever;
+  for (std::uint32_t taken = 0; taken < least.size(); ++taken) {
+    const auto k = static_cast<std::size_t>(std::popcount(taken));
+    if (k == samples.size()) best = std::min(best, least[taken]);
+    if (k >= samples.size()) continue;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      if ((taken >> i & 1u) != 0) continue;
+      const int dx = samples[k].x - positions[i].x, dy = samples[k].y - positions[i].y;
+      int& next = least[taken | 1u << i];
+      next = std::min(next, least[taken] + dx * dx + dy * dy);
+    }
+  }
+  return best;
+}
+
+TEST(CoverageMap, PositionsAreTheSamplesAndWhatLiesFarthestFromThem) {
+  const auto same = [](SamplePosition a, SamplePosition b) { return a.x == b.x && a.y == b.y; };
   for (const auto& [samples, positions] : {std::pair(2, 4), {4, 8}, {4, 16}, {8, 16}}) {
-    std::vector<SamplePosition> ordered = coverage_positions(samples, positions);
-    const std::span<const SamplePosition> all = standard_sample_positions(positions);
-    ASSERT_EQ(ordered.size(), all.size());
+    const std::vector<SamplePosition> found = coverage_positions(samples, positions);
+    const auto own = standard_sample_positions(samples), all = standard_sample_positions(positions);
+    ASSERT_EQ(found.size(), all.size());
+    EXPECT_TRUE(std::equal(own.begin(), own.end(), found.begin(), same));
+    std::vector<SamplePosition> replaced;
     for (const SamplePosition p : all)
-      EXPECT_EQ(std::count_if(ordered.begin(), ordered.end(),
-                              [&](SamplePosition o) { return o.x == p.x && o.y == p.y; }),
-                1);
-    // The samples do not crowd around the center, as the first of the standard order do.
-    int quarters = 0;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(samples); ++k)
-      quarters |= 1 << ((ordered[k].x >= 0 ? 1 : 0) + (ordered[k].y >= 0 ? 2 : 0));
-    EXPECT_GE(std::popcount(static_cast<unsigned>(quarters)), std::min(samples, 3));
+      if (std::none_of(found.begin() + samples, found.end(), [&](SamplePosition f) { return same(f, p); }))
+        replaced.push_back(p);
+    ASSERT_EQ(replaced.size(), own.size());
+    EXPECT_EQ(least_distance2(own, replaced), least_distance2(own, all)) << samples << " of " << positions;
   }
 }
 
@@ -87,25 +111,59 @@ TEST(CoverageMap, FollowsFragmentsByHand) {
   const auto never = [](int, int) { return false; };
   const auto always = [](int, int) { return true; };
   const CoverageWord clear;
+  const CoverageLayout& layout = coverage_layout(4, 8);
   // Half of the pixel: samples 0, 1, positions 4, 5. The rest stays with a sample of the background.
-  const CoverageWord half = insert_fragment(clear, 4, 8, 0b0011, 0b00110011, false, never);
+  const CoverageWord half = insert_fragment(clear, layout, 0b0011, 0b00110011, false, never);
   for (const int q : {0, 1, 4, 5}) EXPECT_EQ(half.at(q), 0u) << q;
   for (const int q : {2, 3, 6, 7}) EXPECT_EQ(half.at(q), 2u) << q;
   // Dropped instead.
-  const CoverageWord dropped = insert_fragment(clear, 4, 8, 0b0011, 0b00110011, true, never);
+  const CoverageWord dropped = insert_fragment(clear, layout, 0b0011, 0b00110011, true, never);
   EXPECT_EQ(dropped.at(6), kNoSample);
   EXPECT_EQ(dropped.at(4), 0u);
   // A third surface takes the background's samples: its positions have no color left.
-  const CoverageWord third = insert_fragment(half, 4, 8, 0b1100, 0b01001100, false, never);
+  const CoverageWord third = insert_fragment(half, layout, 0b1100, 0b01001100, false, never);
   EXPECT_EQ(third.at(6), 2u);
   EXPECT_EQ(third.at(7), kNoSample);
   EXPECT_EQ(third.at(4), 0u) << "hidden, or not covered: as before";
   // Over what the other sample holds it wins only in front of it.
-  EXPECT_EQ(insert_fragment(half, 4, 8, 0b1000, 0b11111000, false, never).at(4), 0u);
-  EXPECT_EQ(insert_fragment(half, 4, 8, 0b1000, 0b11111000, false, always).at(4), 3u);
+  EXPECT_EQ(insert_fragment(half, layout, 0b1000, 0b11111000, false, never).at(4), 0u);
+  EXPECT_EQ(insert_fragment(half, layout, 0b1000, 0b11111000, false, always).at(4), 3u);
   // Without a sample of its own it hides what it covers.
-  EXPECT_EQ(hide_positions(half, 4, 8, 0b00110000, always).at(4), kNoSample);
-  EXPECT_EQ(hide_positions(half, 4, 8, 0b00110000, never).at(4), 0u);
+  EXPECT_EQ(hide_positions(half, layout, 0b00110000, always).at(4), kNoSample);
+  EXPECT_EQ(hide_positions(half, layout, 0b00110000, never).at(4), 0u);
+}
+
+// A small triangle of a surface covers position 4 alone; the surface has the nearest sample, or gets it
+// later.
+TEST(CoverageMap, HiddenPositionsStandForTheNearestSample) {
+  const auto never = [](int, int) { return false; };
+  const auto always = [](int, int) { return true; };
+  const CoverageLayout& layout = coverage_layout(4, 8);
+  const std::uint32_t nearest = layout.nearest_sample[4], far = (nearest + 1) % 4;
+  const CoverageWord hidden = hide_positions(CoverageWord(), layout, 0b00010000, always);
+  EXPECT_EQ(layout.shown_at(hidden, 4), nearest);
+  EXPECT_EQ(layout.shown_at(hidden, 5), 0u);
+  // What is drawn behind the nearest sample's surface does not come forward here.
+  const std::uint32_t behind = 1u << far | 0b11110000u;
+  EXPECT_EQ(insert_fragment(hidden, layout, 1u << far, behind, false, never).at(4), kNoSample);
+  EXPECT_EQ(insert_fragment(hidden, layout, 1u << far, behind, false, always).at(4), far);
+  // The surface's own triangle at the nearest sample does not cover the position, but shows there.
+  const CoverageWord later = insert_fragment(hidden, layout, 1u << nearest, 1u << nearest, false, never);
+  EXPECT_EQ(layout.shown_at(later, 4), nearest);
+}
+
+TEST(CoverageMap, NearestSamplesAreNearest) {
+  for (const auto& [samples, positions] : {std::pair(2, 4), {4, 8}, {4, 16}, {8, 16}}) {
+    const std::vector<SamplePosition> at = coverage_positions(samples, positions);
+    const CoverageLayout& layout = coverage_layout(samples, positions);
+    const auto distance = [&](std::size_t q, std::size_t k) {
+      return std::hypot(at[q].x - at[k].x, at[q].y - at[k].y);
+    };
+    for (std::size_t q = 0; q < at.size(); ++q)
+      for (std::size_t k = 0; k < static_cast<std::size_t>(samples); ++k)
+        EXPECT_LE(distance(q, layout.nearest_sample[q]), distance(q, k)) << q << " " << k;
+  }
+  EXPECT_THROW(coverage_layout(4, 32), std::invalid_argument);
 }
 
 // One triangle over a clear image: every pixel in which it has a sample and the background has one weighs it
@@ -120,7 +178,8 @@ TEST(CoverageMap, MeetsMultisamplingWhereSamplesSuffice) {
       const std::vector<glm::vec3> t = {
           {next(), next(), 0.5f}, {next(), next(), 0.5f}, {next(), next(), 0.5f}};
       const Emulation ours = Frame(triangles(t), samples, positions).run();
-      const Emulation fine = Frame(triangles(t), positions, 0).run();
+      const Emulation fine =
+          Frame(triangles(t), positions, 0, false, coverage_positions(samples, positions)).run();
       const Emulation coarse = Frame(triangles(t), samples, 0).run();
       for (std::size_t p = 0; p < fine.color.pixels.size(); ++p) {
         const float expected = fine.color.pixels[p].x, found = ours.color.pixels[p].x;
@@ -148,7 +207,7 @@ TEST(CoverageMap, TwoHalvesFillThePixel) {
     const std::vector<glm::vec3>& second = swapped ? a : b;
     both.insert(both.end(), second.begin(), second.end());
     const Emulation ours = Frame(triangles(both), 4, 16).run();
-    const Emulation fine = Frame(triangles(both), 16, 0).run();
+    const Emulation fine = Frame(triangles(both), 16, 0, false, coverage_positions(4, 16)).run();
     int mixed = 0;
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize / 2; ++x) {
