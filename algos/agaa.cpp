@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "algos/agaa_layout.h"
+#include "algos/agaa_uniforms.h"
 #include "algos/frame_parts.h"
 #include "algos/shaders/agaa.h"
 #include "pipeline/shade/mesh_vertex.h"
@@ -90,7 +91,11 @@ class Builder {
     const auto positions = effective.empty() ? standard_sample_positions(o_.samples)
                                              : std::span<const SamplePosition>(effective);
     std::ranges::copy(positions, positions_.begin());
-    set_rays();
+    const float aspect = static_cast<float>(graph_.width()) / static_cast<float>(graph_.height());
+    view_from_clip_ = glm::inverse(clip_from_view(parts_.camera, aspect));
+    rays_ = center_rays(parts_.camera, view_from_clip_, graph_.width(), graph_.height());
+    perspective_ = glm::length(rays_.per_y) > 0.0f;
+    pixel_m_ = glm::length(perspective_ ? rays_.per_y : rays_.origin_per_y);
   }
 
   FrameGraph build() {
@@ -129,35 +134,6 @@ class Builder {
     }
     for (const AggregateLayout::Target& target : layout_.targets)
       targets_.push_back(image("aggregate_" + target.name, target.format, color_samples_, layers_));
-  }
-
-  // Rays through pixel centers from two planes of constant view depth.
-  void set_rays() {
-    const float aspect = static_cast<float>(graph_.width()) / static_cast<float>(graph_.height());
-    view_from_clip_ = glm::inverse(clip_from_view(parts_.camera, aspect));
-    const glm::mat3 world_from_view = glm::transpose(glm::mat3(parts_.camera.view_from_world));
-    const auto at = [&](float x, float y, float z) {
-      const glm::vec4 p = view_from_clip_ *
-                          glm::vec4(2.0f * (x + 0.5f) / static_cast<float>(graph_.width()) - 1.0f,
-                                    1.0f - 2.0f * (y + 0.5f) / static_cast<float>(graph_.height()), z, 1.0f);
-      return glm::vec3(p) / p.w;
-    };
-    const auto direction = [&](float x, float y) {
-      const glm::vec3 a = at(x, y, 0.25f), b = at(x, y, 0.75f);
-      return (b - a) / (a.z - b.z);
-    };
-    const auto origin = [&](float x, float y) {
-      const glm::vec3 a = at(x, y, 0.25f);
-      return a + direction(x, y) * a.z;
-    };
-    rays_.first = world_from_view * direction(0, 0);
-    rays_.per_x = world_from_view * (direction(1, 0) - direction(0, 0));
-    rays_.per_y = world_from_view * (direction(0, 1) - direction(0, 0));
-    rays_.origin = world_from_view * origin(0, 0);
-    rays_.origin_per_x = world_from_view * (origin(1, 0) - origin(0, 0));
-    rays_.origin_per_y = world_from_view * (origin(0, 1) - origin(0, 0));
-    pixel_m_ = glm::length(rays_.per_y) > 0.0f ? glm::length(rays_.per_y) : glm::length(rays_.origin_per_y);
-    perspective_ = glm::length(rays_.per_y) > 0.0f;
   }
 
   Pass& add_geometry_pass(const std::string& name) {
@@ -332,8 +308,8 @@ class Builder {
     // The rows of view z and w hold no x and y: projections keep the planes of equal depth.
     const glm::mat4& m = view_from_clip_;
     u->depth_of_z = {-m[3][2], -m[2][2], m[3][3], m[2][3]};
-    set_taps(*u);
-    set_disk(*u);
+    set_shadow_taps(*u, o_.shadow_taps);
+    set_hemisphere(*u, o_.visible_normals);
     const ImageId output = add_output(graph_);
     Pass& pass = graph_.add_pass("shade", PassKind::full_screen);
     pass.color = {output};
@@ -357,37 +333,6 @@ class Builder {
     }
     pass.fragment = &agaa_shade_program(o_.ndf, atomic_);
     pass.uniforms = std::move(u);
-  }
-
-  // Quantiles of a normal distribution at the middles of equal shares; three taps as techniques 4.8 has them.
-  void set_taps(ShadeUniforms& u) const {
-    static constexpr float kQuantiles[kMaxShadowTaps][kMaxShadowTaps] = {
-        {0.0f},
-        {-0.674f, 0.674f},
-        {-1.0f, 0.0f, 1.0f},
-        {-1.150f, -0.319f, 0.319f, 1.150f},
-        {-1.282f, -0.524f, 0.0f, 0.524f, 1.282f},
-        {-1.383f, -0.674f, -0.210f, 0.210f, 0.674f, 1.383f},
-        {-1.465f, -0.792f, -0.366f, 0.0f, 0.366f, 0.792f, 1.465f},
-        {-1.534f, -0.887f, -0.489f, -0.157f, 0.157f, 0.489f, 0.887f, 1.534f}};
-    u.shadow_taps = o_.shadow_taps;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(o_.shadow_taps); ++i) {
-      u.tap_position[i] = kQuantiles[o_.shadow_taps - 1][i];
-      u.tap_weight[i] =
-          o_.shadow_taps == 3 ? (i == 1 ? 0.5f : 0.25f) : 1.0f / static_cast<float>(o_.shadow_taps);
-    }
-  }
-
-  // Hammersley points over the disk.
-  void set_disk(ShadeUniforms& u) const {
-    u.visible_normals = o_.visible_normals;
-    for (int i = 0; i < o_.visible_normals; ++i) {
-      float turn = 0.0f, digit = 0.5f;
-      for (int bits = i; bits != 0; bits >>= 1, digit *= 0.5f) turn += (bits & 1) != 0 ? digit : 0.0f;
-      const float r = std::sqrt((static_cast<float>(i) + 0.5f) / static_cast<float>(o_.visible_normals));
-      const float phi = 6.2831853f * turn, x = r * std::cos(phi), y = r * std::sin(phi);
-      u.disk[static_cast<std::size_t>(i)] = {x, y, std::sqrt(std::max(0.0f, 1.0f - x * x - y * y))};
-    }
   }
 
   FrameGraph graph_;

@@ -7,16 +7,13 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include "algos/shaders/agaa_record-inl.h"
+#include "algos/shaders/derivatives-inl.h"
 #include "pipeline/shade/count_fragment-inl.h"
 #include "pipeline/shade/fragment_lanes-inl.h"
 #include "pipeline/shade/surface-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::algos::HWY_NAMESPACE {
-
-// Derivatives: lanes have their own, the counting type charges one subtraction.
-inline pipeline::CountF ddx(pipeline::CountF a) { return min(a, a); }
-inline pipeline::CountF ddy(pipeline::CountF a) { return min(a, a); }
 
 template <bool kAlpha>
 struct VisibilityShader {

@@ -4,6 +4,7 @@
 #define HWY_TARGET_INCLUDE "algos/shaders/deferred.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include "algos/shaders/derivatives-inl.h"
 #include "algos/shaders/gbuffer-inl.h"
 #include "pipeline/shade/count_fragment-inl.h"
 #include "pipeline/shade/fragment_lanes-inl.h"
@@ -11,10 +12,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::algos::HWY_NAMESPACE {
 namespace lanes = pipeline::HWY_NAMESPACE;
-
-// Derivatives: lanes have their own, the counting type charges one subtraction.
-inline pipeline::CountF ddx(pipeline::CountF a) { return min(a, a); }
-inline pipeline::CountF ddy(pipeline::CountF a) { return min(a, a); }
 
 template <GBufferEncoding kEncoding, bool kAlphaTest>
 struct GBufferShader {
@@ -31,8 +28,7 @@ struct GBufferShader {
     if constexpr (kEncoding != GBufferEncoding::compact) {
       const glm::mat4& v = u.view_from_world;
       const F z = F(v[0][2]) * p.x + F(v[1][2]) * p.y + F(v[2][2]) * p.z + F(v[3][2]);
-      const F limit(65504.0f);  // grazing angles overflow half floats
-      values.gradient = {min(abs(ddx(z)), limit), min(abs(ddy(z)), limit)};
+      values.gradient = depth_gradient(z);
     }
     write_gbuffer<kEncoding>(s, values);
   }

@@ -4,6 +4,7 @@
 #define HWY_TARGET_INCLUDE "algos/shaders/sbaa.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include "algos/shaders/derivatives-inl.h"
 #include "algos/shaders/sbaa_record-inl.h"
 #include "pipeline/shade/count_fragment-inl.h"
 #include "pipeline/shade/fragment_lanes-inl.h"
@@ -49,9 +50,6 @@ enum SbaaBlock : int {
   kPaddingBlock = 15    // a word without use
 };
 
-inline pipeline::CountF ddx(pipeline::CountF a) { return min(a, a); }
-inline pipeline::CountF ddy(pipeline::CountF a) { return min(a, a); }
-
 template <bool kFull, bool kAlphaTest>
 struct SbaaGBufferShader {
   using Uniforms = SbaaGBufferUniforms;
@@ -93,14 +91,8 @@ struct SbaaGBufferShader {
   static void store(S& s, const SbaaGBufferUniforms& u, const lanes::MaterialSample<F>& m, F view_z, I slot,
                     M accepted) {
     const auto p = s.attr3(pipeline::SurfaceVaryings::kPosition);
-    const F limit(65504.0f);
-    const GBufferValues<F> values{p,
-                                  m.normal,
-                                  {m.base.x, m.base.y, m.base.z},
-                                  m.emissive,
-                                  m.metallic,
-                                  m.roughness,
-                                  {min(abs(ddx(view_z)), limit), min(abs(ddy(view_z)), limit)}};
+    const GBufferValues<F> values{p,          m.normal,    {m.base.x, m.base.y, m.base.z}, m.emissive,
+                                  m.metallic, m.roughness, depth_gradient(view_z)};
     const glm::mat4& c = u.clip_from_world;
     const auto row = [&](int r) HWY_ATTR {
       return F(c[0][r]) * p.x + F(c[1][r]) * p.y + F(c[2][r]) * p.z + F(c[3][r]);

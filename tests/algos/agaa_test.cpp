@@ -329,19 +329,24 @@ TEST(Agaa, GrayStaysGray) {
   EXPECT_GT(partial, 10);
 }
 
+/// Half as wide as pixels, of two slopes in turn.
+pipeline::Scene slats(float slope) {
+  std::vector<Patch> list;
+  const float half_pixel = 0.03625f;
+  for (int i = -20; i < 20; ++i)
+    list.push_back({half_pixel * static_cast<float>(i), half_pixel * static_cast<float>(i + 1), 0,
+                    glm::vec3(0.5f), (i & 1) != 0 ? slope : -slope});
+  return patches(list);
+}
+
 // Seen and lit along the mean normal of slats: the lobe's density there times what the material reflects in
 // all, which does not grow with the normals' spread.
 TEST(Agaa, SpreadNormalsReflectNoMoreLight) {
-  std::vector<Patch> list;
-  const float pixel = 0.0725f;
-  for (int i = -20; i < 20; ++i)
-    list.push_back({pixel * 0.5f * static_cast<float>(i), pixel * 0.5f * static_cast<float>(i + 1), 0,
-                    glm::vec3(0.5f), (i & 1) != 0 ? 0.8f : -0.8f});
-  pipeline::Scene slats = patches(list);
-  for (pipeline::Material& m : slats.materials) m.metallic = 1.0f;  // no diffuse light
-  slats.lights.front().direction = glm::vec3(0.0f, 0.0f, -1.0f);
-  slats.ambient = glm::vec3(0.0f);
-  const Shot shot{share(std::move(slats)), "agaa:c=1"};
+  pipeline::Scene scene = slats(0.8f);
+  for (pipeline::Material& m : scene.materials) m.metallic = 1.0f;  // no diffuse light
+  scene.lights.front().direction = glm::vec3(0.0f, 0.0f, -1.0f);
+  scene.ambient = glm::vec3(0.0f);
+  const Shot shot{share(std::move(scene)), "agaa:c=1"};
   const Planes shape = planes_of(shot, "aggregate_shape");
   const pipeline::Image image = render(shot).color;
   const float own = 2.0f / std::pow(0.5f, 4.0f) - 2.0f;
@@ -358,14 +363,9 @@ TEST(Agaa, SpreadNormalsReflectNoMoreLight) {
   EXPECT_GT(spread, 0);
 }
 
-// Half-pixel slats of two slopes: their common lobe is wider than that of either.
+// Slats of two slopes: their common lobe is wider than that of either.
 TEST(Agaa, MixedNormalsWidenTheLobe) {
-  std::vector<Patch> list;
-  const float pixel = 0.0725f;
-  for (int i = -20; i < 20; ++i)
-    list.push_back({pixel * 0.5f * static_cast<float>(i), pixel * 0.5f * static_cast<float>(i + 1), 0,
-                    glm::vec3(0.5f), (i & 1) != 0 ? 0.6f : -0.6f});
-  const Planes shape = planes_of({share(patches(list)), "agaa:c=1"}, "aggregate_shape");
+  const Planes shape = planes_of({share(slats(0.6f)), "agaa:c=1"}, "aggregate_shape");
   const float own = 2.0f / std::pow(0.5f, 4.0f) - 2.0f, length = own / (own + 1.0f);  // roughness 1/2
   int mixed = 0;
   for (int x = 8; x < kWidth - 8; ++x) {
