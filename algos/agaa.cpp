@@ -386,7 +386,7 @@ constexpr ParameterInfo kParameters[] = {
     {"emulate", 0, 0, 2, "layers of 8 samples, by viewport multicast, or native samples", kEmulateChoices},
     {"accumulate", 0, 0, 2, "aggregates add up by blending into mixed samples, or by atomics",
      "auto|blend|atomics"},
-    {"centroid", 1, 0, 1, "attributes inside the primitive at partly covered pixels", "off|on"},
+    kCentroid,
     {"plane_path", 0, 0, 2,
      "native samples: depth tiles that are compressed to few planes take those for aggregates",
      "auto|on|off"},

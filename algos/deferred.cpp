@@ -18,13 +18,14 @@ struct GBuffer {
   std::vector<ImageId> attachments;
   ImageId depth, lit;
   int samples = 1;
-  bool alpha_to_coverage = false;
+  bool centroid = true, alpha_to_coverage = false;
 };
 
 GBuffer add_gbuffer(FrameGraph& graph, const Parameters& parameters) {
   GBuffer g;
   g.layout = &gbuffer_layouts()[static_cast<std::size_t>(parameters.find("layout")->second)];
   g.samples = static_cast<int>(parameters.find("samples")->second);
+  g.centroid = parameters.find("centroid")->second != 0;
   const auto image = [&](std::string_view name, Format format) {
     return graph.add_image({std::string(name), format, graph.width(), graph.height(), g.samples});
   };
@@ -39,6 +40,7 @@ DrawBatch gbuffer_batch(const FrameParts& parts, const GBuffer& g, const std::ve
                         bool alpha_test) {
   DrawBatch batch;
   batch.state = opaque_state({});
+  batch.state.raster.centroid = g.centroid;
   batch.vertex = parts.full_varyings ? &mesh_full_program() : &mesh_surface_program();
   batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{parts.clip_from_world});
   batch.fragment = &gbuffer_program(g.layout->encoding, parts.full_varyings, alpha_test);
@@ -212,11 +214,12 @@ FrameGraph build_simple_complex(const FrameRequest& request, const Parameters& p
 }
 
 constexpr ParameterInfo kLayout{"layout", 0, 0, 3, "what the G-buffer holds of a sample", kLayoutChoices};
-constexpr std::array<ParameterInfo, 2> kDeferred = {
-    ParameterInfo{"samples", 8, 1, 32, "samples a pixel: a power of two"}, kLayout};
-constexpr std::array<ParameterInfo, 7> kSimpleComplex = {
+constexpr std::array<ParameterInfo, 3> kDeferred = {
+    ParameterInfo{"samples", 8, 1, 32, "samples a pixel: a power of two"}, kLayout, kCentroid};
+constexpr std::array<ParameterInfo, 8> kSimpleComplex = {
     ParameterInfo{"samples", 8, 2, 32, "samples a pixel: a power of two"},
     kLayout,
+    kCentroid,
     ParameterInfo{"lighting", 0, 0, 1, "full-screen passes with stencil, or 16x16 compute tiles",
                   "stencil|compute"},
     ParameterInfo{"normal_dot_min", 0.99, 0, 1, "normals further apart make a pixel complex (cosine)"},

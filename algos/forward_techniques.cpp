@@ -138,8 +138,6 @@ FrameGraph build_msaa(const FrameRequest& request, const Parameters& parameters)
   return graph;
 }
 
-constexpr ParameterInfo kCentroid{
-    "centroid", 1, 0, 1, "attributes inside the primitive at partly covered pixels", "off|on"};
 constexpr CoverageMode kCsaaModes[] = {{4, 8}, {8, 8}, {4, 16}, {8, 16}};
 FrameGraph build_csaa(const FrameRequest& request, const Parameters& parameters) {
   return build_coverage(request, parameters, kCsaaModes[integer(parameters, "mode")]);

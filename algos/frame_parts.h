@@ -36,6 +36,11 @@ pipeline::LightingUniforms frame_lighting(const FrameRequest& request);
 /// added.
 FrameParts prepare_frame(pipeline::FrameGraph& graph, const FrameRequest& request);
 
+/// Where a pixel is covered in part, its center may lie outside of the primitive, and what is interpolated
+/// there is extrapolated: normals of fine meshes then point beyond all that the surface shows.
+inline constexpr ParameterInfo kCentroid{
+    "centroid", 1, 0, 1, "attributes inside the primitive at partly covered pixels", "off|on"};
+
 /// A target of a forward pass.
 struct ForwardTarget {
   pipeline::ImageId color, depth;

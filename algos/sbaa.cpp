@@ -17,7 +17,7 @@ struct SbaaOptions {
   int slots = 2;
   int id_bits = 7;
   int record_bytes = kFullRecordBytes;
-  bool weigh_background = true;
+  bool weigh_background = true, centroid = true;
   SbaaSample sample = SbaaSample::id;
   float cos_alpha = 0.0f, end_region = 0.0f;
   bool linear_depth = false;
@@ -36,6 +36,7 @@ SbaaOptions read_options(const Parameters& parameters) {
   o.id_bits = static_cast<int>(value(parameters, "id_bits"));
   o.record_bytes = 4 * static_cast<int>(std::ceil(value(parameters, "record_bytes") / 4.0));
   o.weigh_background = value(parameters, "background") == 0;
+  o.centroid = value(parameters, "centroid") != 0;
   if (o.slots > o.samples) {
     Diagnostic error;
     error.code = "T003";
@@ -93,6 +94,7 @@ DrawBatch visibility_batch(const FrameParts& parts, const SbaaOptions& o, const 
                            bool alpha_test) {
   DrawBatch batch;
   batch.state = opaque_state({});
+  batch.state.raster.centroid = o.centroid;
   batch.vertex = o.merges() ? (alpha_test ? &mesh_normal_uv_program() : &mesh_normal_program())
                             : (alpha_test ? &mesh_uv_program() : &mesh_position_program());
   batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{parts.clip_from_world});
@@ -150,6 +152,7 @@ DrawBatch record_batch(const FrameGraph& graph, const FrameParts& parts, const S
                        const std::vector<DrawCall>& draws, bool alpha_test) {
   DrawBatch batch;
   batch.state = opaque_state({});
+  batch.state.raster.centroid = o.centroid;
   batch.state.depth = {true, false, Compare::equal};
   batch.state.force_early_z = true;
   batch.vertex = parts.full_varyings ? &mesh_full_program() : &mesh_surface_program();
@@ -237,13 +240,15 @@ constexpr ParameterInfo kRecordBytes{"record_bytes", 32, 12, 64,
                                      "emission"};
 constexpr ParameterInfo kBackground{
     "background", 0, 0, 1, "whether background samples weigh in at partly covered pixels", "weighted|ignore"};
-constexpr std::array<ParameterInfo, 5> kTop = {kSurfaces, kSamples, kIdBits, kRecordBytes, kBackground};
-constexpr std::array<ParameterInfo, 9> kMerge = {
+constexpr std::array<ParameterInfo, 6> kTop = {kSurfaces,    kSamples,    kIdBits,
+                                               kRecordBytes, kBackground, kCentroid};
+constexpr std::array<ParameterInfo, 10> kMerge = {
     kSurfaces,
     kSamples,
     kIdBits,
     kRecordBytes,
     kBackground,
+    kCentroid,
     ParameterInfo{"alpha", 0.19634954084936207, 0.001, 1.57,
                   "angle within which normals are of one surface, in radians"},
     ParameterInfo{"end_region", 0.25, 0, 0.5,

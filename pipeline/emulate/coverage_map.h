@@ -1,7 +1,7 @@
 #pragma once
 // Coverage at more positions than a pixel has samples (CSAA, EQAA; techniques 1.6). The first positions are
 // those of the samples, with depth and color of their own; every further one names the sample whose color it
-// has, or none: then the resolve leaves it out. The rule is ours, no vendor documents one.
+// has, or none. The rule is ours, no vendor documents one.
 //
 // A fragment that passes the depth test at some sample takes, in the name of the lowest of these samples, the
 // further positions that it covers, where it wins against the depth of the sample that they name. Positions

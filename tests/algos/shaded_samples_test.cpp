@@ -1,5 +1,5 @@
 // SBAA (Salvi, Vidimce 2012), Table 3: samples that the deferred reference lights at 1280x720 and 8x. The
-// generated stand-ins hold them.
+// generated stand-ins hold them, with attributes at pixel centers.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -15,7 +15,7 @@ std::uint64_t lit_samples(const std::string& scene) {
   request.width_px = 1280;
   request.height_px = 720;
   request.shadows = false;
-  const auto choice = algos::parse_technique("deferred_simple_complex:samples=8");
+  const auto choice = algos::parse_technique("deferred_simple_complex:samples=8,centroid=off");
   const auto e =
       pipeline::emulate(algos::build_frame(choice, request), GpuFeatures{}, FunctionalConfig{}, {});
   std::uint64_t lit = 0;
