@@ -9,45 +9,45 @@ struct BlockLanes {
   std::array<std::uint64_t, kSubgroupWidths.size()> issued{};
 };
 
-/// Lanes of a batch that run, in groups of the narrowest subgroup's width.
-struct ValidGroups {
-  static constexpr std::size_t kWidth = kSubgroupWidths[0], kCount = kBatchLanes / kWidth;
-  std::array<std::uint64_t, kCount> lanes;  ///< that run, of each
-  std::size_t used = 0;                     ///< groups up to the last that has one
-
-  explicit ValidGroups(std::uint64_t valid_lanes) {
-    for (std::size_t g = 0; g < kCount; ++g) {
-      lanes[g] = static_cast<std::uint64_t>(__builtin_popcountll(valid_lanes >> (g * kWidth) & 0xff));
-      if (lanes[g] != 0) used = g + 1;
-    }
+/// Adds up a block's trips, from the narrowest subgroups to the widest.
+class TripSum {
+ public:
+  TripSum(const std::array<std::int32_t, kBatchLanes>& trips, std::uint64_t valid_lanes)
+      : trips_(trips), valid_lanes_(valid_lanes) {
+    add<kSubgroupWidths.size() - 1>(0);
   }
+  const BlockLanes& sum() const { return sum_; }
+
+ private:
+  /// Of the subgroup from lane `first` on; returns the most trips of one lane. A subgroup that the batch does
+  /// not fill is charged for its share: the hardware fills it with other quads.
+  template <std::size_t kWidth>
+  std::uint64_t add(std::size_t first) {
+    constexpr auto kLanes = static_cast<std::size_t>(kSubgroupWidths[kWidth]);
+    const std::uint64_t valid = valid_lanes_ >> first & (~std::uint64_t{0} >> (kBatchLanes - kLanes));
+    if (valid == 0) return 0;
+    std::uint64_t most = 0;
+    if constexpr (kWidth == 0) {
+      std::int32_t all = 0, highest = 0;
+      for (std::size_t lane = first; lane < first + kLanes; ++lane) {
+        all += trips_[lane];
+        highest = std::max(highest, trips_[lane]);
+      }
+      sum_.active += static_cast<std::uint64_t>(all);
+      most = static_cast<std::uint64_t>(highest);
+    } else {
+      static_assert(kSubgroupWidths[kWidth] == 2 * kSubgroupWidths[kWidth - 1]);
+      const std::uint64_t low = add<kWidth - 1>(first);
+      most = std::max(low, add<kWidth - 1>(first + kLanes / 2));
+    }
+    sum_.issued[kWidth] += most * static_cast<std::uint64_t>(__builtin_popcountll(valid));
+    return most;
+  }
+
+  const std::array<std::int32_t, kBatchLanes>& trips_;
+  const std::uint64_t valid_lanes_;
+  BlockLanes sum_;
 };
-
-BlockLanes sum_trips(const std::array<std::int32_t, kBatchLanes>& trips, const ValidGroups& valid) {
-  constexpr std::size_t kWidth = ValidGroups::kWidth;
-  BlockLanes sum;
-  std::array<std::uint64_t, ValidGroups::kCount> most{}, lanes = valid.lanes;
-  for (std::size_t g = 0; g < valid.used; ++g) {
-    std::int32_t all = 0, highest = 0;
-    for (std::size_t lane = g * kWidth; lane < (g + 1) * kWidth; ++lane) {
-      all += trips[lane];
-      highest = std::max(highest, trips[lane]);
-    }
-    sum.active += static_cast<std::uint64_t>(all);
-    most[g] = static_cast<std::uint64_t>(highest);
-  }
-  // A subgroup that the batch does not fill is charged for its share: the hardware fills it with other quads.
-  std::size_t groups = ValidGroups::kCount;
-  for (std::uint64_t& issued : sum.issued) {
-    for (std::size_t g = 0; g < groups; ++g) issued += most[g] * lanes[g];
-    groups /= 2;
-    for (std::size_t g = 0; g < groups; ++g) {
-      most[g] = std::max(most[2 * g], most[2 * g + 1]);
-      lanes[g] = lanes[2 * g] + lanes[2 * g + 1];
-    }
-  }
-  return sum;
-}
 
 void charge(const ShaderOps& ops, const BlockLanes& n, PassCounters& c) {
   ShaderCounters& s = c.shader;
@@ -100,12 +100,10 @@ void account_blocks(const BlockTrips& blocks, const BlockOps& ops, int block_cou
   all.active = static_cast<std::uint64_t>(__builtin_popcountll(valid_lanes));
   all.issued.fill(all.active);
   charge(ops[0], all, counters);
-  if (blocks.used == 0) return;
-  const ValidGroups valid(valid_lanes);
   for (int block = 1; block < block_count; ++block) {
     if ((blocks.used >> block & 1u) == 0) continue;
     charge(ops[static_cast<std::size_t>(block)],
-           sum_trips(blocks.trips[static_cast<std::size_t>(block)], valid), counters);
+           TripSum(blocks.trips[static_cast<std::size_t>(block)], valid_lanes).sum(), counters);
   }
 }
 

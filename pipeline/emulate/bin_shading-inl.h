@@ -127,10 +127,13 @@ class BinShading : protected BinColor {
     return false;
   }
 
+  static std::int32_t place_of(int block, int quad) { return block * kQuadsPerBlock + quad; }
+
   bool holds(int block, int quad) const {
-    for (std::size_t q = 0; q < static_cast<std::size_t>(w_.batch.quad_count); ++q)
-      if (w_.block[q] == block && w_.quad_in_block[q] == quad) return true;
-    return false;
+    std::uint32_t equal = 0;
+    for (int q = 0; q < kBatchQuads; q += kVectorLanes)
+      equal |= mask_bits(load(w_.place.data() + q) == LaneI(place_of(block, quad))) << q;
+    return (equal & ((1u << w_.batch.quad_count) - 1)) != 0;
   }
 
   /// The number of the tile's block in targets of the pass's size.
@@ -181,6 +184,7 @@ class BinShading : protected BinColor {
     batch.triangle[q] = t;
     w_.block[q] = block;
     w_.quad_in_block[q] = quad;
+    w_.place[q] = place_of(block, quad);
     if (t == nullptr) return q;
     batch.primitive[q] = t->primitive;
     batch.front_facing[q] = t->front_facing != w_.draw->mirrored;

@@ -47,6 +47,7 @@ struct BinWorker {
   FragmentBatch batch;
   std::array<std::int32_t, kBatchQuads> block;  ///< tile of each quad in the targets
   std::array<std::int32_t, kBatchQuads> quad_in_block;
+  alignas(64) std::array<std::int32_t, kBatchQuads> place{};  ///< both in one number
   std::array<QuadSamples, kBatchQuads> samples;
   std::array<QuadSamples, kBatchQuads>
       primitive_samples;                              ///< before depth and stencil, where they are asked for

@@ -110,9 +110,13 @@ class TileCoverage {
     if (offsets_ready_) return;
     offsets_ready_ = true;
     for (int i = 0; i < 3; ++i) {
+      // A register's lanes are those of the first one, moved.
+      const LaneI x = load(kLaneOffsets.x), y = load(kLaneOffsets.y);
+      const LaneI first = shift_left<4>(LaneI(t_.a[i]) * x + LaneI(t_.b[i]) * y);
       for (int v = 0; v < kBlockVectors; ++v) {
-        const LaneI x = load(kLaneOffsets.x + v * kVectorLanes), y = load(kLaneOffsets.y + v * kVectorLanes);
-        store(shift_left<4>(LaneI(t_.a[i]) * x + LaneI(t_.b[i]) * y), offsets_[i] + v * kVectorLanes);
+        const std::int32_t moved =
+            16 * (t_.a[i] * lane_x(v * kVectorLanes) + t_.b[i] * lane_y(v * kVectorLanes));
+        store(first + LaneI(moved), offsets_[i] + v * kVectorLanes);
       }
     }
   }
