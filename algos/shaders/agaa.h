@@ -41,6 +41,7 @@ struct AggregateUniforms {
   Ndf ndf = Ndf::toksvig;
   PixelRays rays;
   float gloss_reference = 0.0f;  ///< S of techniques 4.8; 0: infinite
+  float least_exponent = 1.0f;   ///< of a lobe: one so wide that its Toksvig vector would vanish keeps this
   int samples = 8;               ///< of all layers
   int code_bits = 1;             ///< of a sample's aggregate; 0: one aggregate
   int width = 1;                 ///< of the frame, px: addresses of the storage buffer

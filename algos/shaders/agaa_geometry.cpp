@@ -35,15 +35,13 @@ struct VisibilityShader {
 
 enum GenerateBlock : int { kCodeBlock = 6, kGeometricBlock = 7, kMomentsBlock = 8 };
 
-/// A lobe so wide that its Toksvig vector would vanish keeps this exponent: |v| >= 1/9, whose direction 16
-/// bits still hold to 0.3 degrees at a 32nd of full weight.
-inline constexpr float kMinExponent = 0.125f;
-/// The same for SGGX: alpha^2.
+/// A sphere of microflakes would have no axis: alpha^2 of SGGX.
 inline constexpr float kMaxFlakeVariance = 0.8f;
 
 template <class F>
-F gloss_of(F exponent, float reference) {
-  const F s = max(exponent, F(kMinExponent));
+F gloss_of(F exponent, const AggregateUniforms& u) {
+  const F s = max(exponent, F(u.least_exponent));
+  const float reference = u.gloss_reference;
   if (reference <= 0.0f) return s / (s + F(1.0f));
   return s * F(reference) / (F(reference) - s + s * F(reference));
 }
@@ -53,7 +51,7 @@ void set_shape(const AggregateUniforms& u, const PixelFrame<F>& frame, const lan
                const Vec3<F>& n, F weight, AggregateRecord<F, I>& r) {
   switch (u.ndf) {
     case Ndf::toksvig: {
-      const F length = gloss_of(surface.exponent, u.gloss_reference) * weight;
+      const F length = gloss_of(surface.exponent, u) * weight;
       r.shape[0] = n.x * length;
       r.shape[1] = n.y * length;
       r.shape[2] = n.z * length;
@@ -65,7 +63,7 @@ void set_shape(const AggregateUniforms& u, const PixelFrame<F>& frame, const lan
       const F scale = min(F(1.0f), F(4.0f) * rsqrt(max(bx * bx + by * by, F(1e-12f))));
       bx = bx * scale;
       by = by * scale;
-      const F own = F(1.0f) / max(surface.exponent, F(kMinExponent));
+      const F own = F(1.0f) / max(surface.exponent, F(u.least_exponent));
       r.shape[0] = bx * weight;
       r.shape[1] = by * weight;
       r.shape[2] = (bx * bx + own) * weight;
@@ -74,7 +72,6 @@ void set_shape(const AggregateUniforms& u, const PixelFrame<F>& frame, const lan
       break;
     }
     case Ndf::sggx: {
-      // A sphere of microflakes would have no normal.
       const F a2 = min(surface.alpha * surface.alpha, F(kMaxFlakeVariance));
       const F outer = (F(1.0f) - a2) * weight, round = a2 * weight;
       r.shape[0] = n.x * n.x * outer + round;
@@ -153,7 +150,7 @@ struct GenerateShader {
     const bool geometric = a.targets.geometric >= 0;
     s.uniform_branch(kGeometricBlock, geometric, [&]() HWY_ATTR {
       r.normal = material.normal * weight;
-      r.gloss = gloss_of(surface.exponent, a.gloss_reference) * weight;
+      r.gloss = gloss_of(surface.exponent, a) * weight;
     });
     s.uniform_branch(kMomentsBlock, a.targets.moments >= 0, [&]() HWY_ATTR {
       const auto p = s.attr3(pipeline::SurfaceVaryings::kPosition);
