@@ -12,6 +12,9 @@
 
 namespace hwsim::algos {
 
+/// Of a list's node that has a mask of the pixel's places and the change of its depth.
+inline constexpr int kSssPlaceNodeWords = 8;
+
 enum class SssMode { both, either };  ///< small triangle and small highlight, or one of them
 
 /// What of a vertex the samples need: by material, so that plain ones move fewer bytes.
@@ -67,7 +70,8 @@ struct SssUniforms {
   // the pixel, row by row, and where they lie, in 1/16 px from the pixel's corner.
   std::array<std::int32_t, 2> nearest_samples{};
   std::int32_t samples_x = 0, samples_y = 0;
-  float radiance_max = 1.0f;  ///< samples are clamped to it
+  std::array<std::int32_t, 8> neighbor_samples{};  ///< of each pixel around, the sample nearest to this one
+  float radiance_max = 1.0f;                       ///< samples are clamped to it
 
   float fixed_point_scale = 1048576.0f;  // compute points (5.3)
   std::vector<SssDraw> draws = std::vector<SssDraw>(1);
@@ -77,7 +81,8 @@ struct SssUniforms {
   int capacity_nodes = 0, node_words = 4, list_nodes_max = 32;
   bool conservative_raster = false;
 
-  int mark_slot = -1;  ///< of composites: image of the samples whose triangle was sampled; -1: none
+  int mark_slot = -1;  ///< image of the frame's samples whose triangle was sampled; -1: none
+  bool by_place() const { return node_words == kSssPlaceNodeWords; }
 };
 
 /// Of the frame below: shaders go through them one by one.
@@ -110,8 +115,8 @@ inline constexpr int kSssClearWords = 4;  ///< of an invocation
 inline constexpr int kSssHeadBuffer = 0, kSssNodeBuffer = 1, kSssCounterBuffer = 2;
 const pipeline::ComputeProgram& sss_clear_program();
 const pipeline::GeometryProgram& sss_boxes_program(SssVertex vertex);
-const pipeline::FragmentProgram& sss_list_program(SssVertex vertex);
-const pipeline::FragmentProgram& sss_list_resolve_program();
+const pipeline::FragmentProgram& sss_list_program(SssVertex vertex, bool by_place);
+const pipeline::FragmentProgram& sss_list_resolve_program(bool by_place);
 
 // The frame under what was sampled
 const pipeline::GeometryProgram& sss_marks_program(SssVertex vertex);

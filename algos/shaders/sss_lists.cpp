@@ -1,4 +1,4 @@
-// Per-pixel lists of what critical triangles contribute (techniques 5.4).
+// Per-pixel lists of what critical triangles contribute (techniques 5.4): creation.
 #include <array>
 
 #include "algos/shaders/sss.h"
@@ -7,7 +7,6 @@
 #define HWY_TARGET_INCLUDE "algos/shaders/sss_lists.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
-#include "algos/shaders/sss_composite-inl.h"
 #include "algos/shaders/sss_geometry-inl.h"
 #include "algos/shaders/sss_pixel-inl.h"
 #include "pipeline/shade/count_fragment-inl.h"
@@ -100,12 +99,19 @@ struct ListShader {
     const auto reached = s.active() & (covered > F(0.0f));
     s.discard(!reached);
     s.branch(kCriticalBlock, reached, [&]() HWY_ATTR {
-      const I in_front = samples_behind(s, u, t, s.flat_attr(kTriangle + kBias));
-      const SeenPart<F> part = light_seen(s, u, t, grid, step, in_front, reached);
-      const auto seen = reached & (part.places > F(0.0f));
-      const F share = F(1.0f) / max(part.places, F(1.0f));
-      const F z = t.depth(part.sum_x * share, part.sum_y * share);
-      store_node(s, u, pack_color<S>(u, part.sum * share, part.places * (F(64.0f) / places)), z, seen);
+      const OpenSamples<I> samples = open_samples(s, u, t, s.flat_attr(kTriangle + kBias));
+      const SeenPart<S> part = light_seen(s, u, t, grid, step, samples, reached);
+      const auto seen = reached & (part.weight > F(0.0f));
+      const F share = F(1.0f) / max(part.weight, F(1e-3f));
+      F z = t.depth(part.sum_x * share, part.sum_y * share);
+      NodeData<S> node = pack_color<S>(u, part.sum * share, part.weight * (F(64.0f) / places));
+      if (u.by_place()) {
+        z = t.depth(F(16.0f), F(16.0f));  // at the first place's center
+        for (int w = 0; w < 2; ++w) node.words[NodeData<S>::kMask + w] = part.mask[w];
+        node.words[NodeData<S>::kSlope] = float_to_bits(t.slope_x * F(32.0f));
+        node.words[NodeData<S>::kSlope + 1] = float_to_bits(t.slope_y * F(32.0f));
+      }
+      store_node(s, u, node, z, seen);
     });
   }
 
@@ -136,50 +142,100 @@ struct ListShader {
     return {(index - row * grid + F(0.5f)) * step, (row + F(0.5f)) * step};
   }
 
-  /// A bit for each of the frame's samples that the triangle's plane is not behind of.
+  /// A bit for each of the frame's samples.
+  template <class I>
+  struct OpenSamples {
+    I in_front;  ///< the triangle's plane is not behind it
+    I open;      ///< or, by place, it is on a sampled triangle itself: the resolve sees which is in front
+  };
+
   template <class S, class F>
-  static typename S::I samples_behind(S& s, const SssUniforms& u, const PixelTriangle<F>& t, F bias) {
+  static OpenSamples<typename S::I> open_samples(S& s, const SssUniforms& u, const PixelTriangle<F>& t,
+                                                 F bias) {
     using I = typename S::I;
-    I bits(0);
+    OpenSamples<I> samples = {I(0), I(0)};
     for (int k = 0; k < kSssBaseSamples; ++k) {
       const auto at = [&](std::int32_t digits)
                           HWY_ATTR { return F(16.0f * static_cast<float>(digits >> (4 * k) & 15)); };
       const F z = t.depth(at(u.samples_x), at(u.samples_y)) - bias;
       const F scene = s.load_image(kSssDepthSlot, s.pixel_x(), s.pixel_y(), I(k)).x;
-      bits = bits | select(z > scene, I(0), I(1 << k));
+      samples.in_front = samples.in_front | select(z > scene, I(0), I(1 << k));
+      if (!u.by_place()) continue;
+      const F marked = s.load_image(u.mark_slot, s.pixel_x(), s.pixel_y(), I(k)).x;
+      samples.open = samples.open | select(marked > F(0.5f), I(1 << k), I(0));
     }
-    return bits;
+    // What is behind all of them, and around them, is far behind (the paper's discard).
+    if (u.by_place()) {
+      const auto near = (I(0) < samples.in_front) | seen_beside(s, u, t, bias);
+      samples.open = select(near, samples.open, I(0));
+    }
+    samples.open = samples.open | samples.in_front;
+    return samples;
   }
 
-  /// The covered places that are seen: how many, the sums of where they are and of their light.
-  template <class F>
+  /// Whether the plane is not behind the nearest sample of any pixel around: then an edge between may show it
+  /// here.
+  template <class S, class F>
+  static typename S::M seen_beside(S& s, const SssUniforms& u, const PixelTriangle<F>& t, F bias) {
+    using I = typename S::I;
+    auto seen = s.active() & (F(0.0f) > F(1.0f));
+    for (int k = 0; k < 8; ++k) {
+      const int i = k < 4 ? k : k + 1, x = i % 3 - 1, y = i / 3 - 1;
+      const int sample = u.neighbor_samples[static_cast<std::size_t>(k)];
+      const auto at = [&](std::int32_t digits, int pixel) HWY_ATTR {
+        return F(16.0f * static_cast<float>((digits >> (4 * sample) & 15) + 16 * pixel));
+      };
+      const I px = s.pixel_x() + I(x), py = s.pixel_y() + I(y);
+      const auto exists = (I(-1) < px) & (I(-1) < py) & (px < I(u.width_px)) & (py < I(u.height_px));
+      const F scene = s.load_image(kSssDepthSlot, max(min(px, I(u.width_px - 1)), I(0)),
+                                   max(min(py, I(u.height_px - 1)), I(0)), I(sample))
+                          .x;
+      seen = seen | (exists & !(t.depth(at(u.samples_x, x), at(u.samples_y, y)) - bias > scene));
+    }
+    return seen;
+  }
+
+  /// The covered places that may be seen, and the sums of where they are and of their light, by weight.
+  template <class S>
   struct SeenPart {
-    F places, sum_x, sum_y;
+    using F = typename S::F;
+    F weight, sum_x, sum_y;
     Vec3<F> sum;
+    typename S::I mask[2];
   };
 
+  /// A place that only the resolve may show still has a color, but a seen one's counts for more.
+  static constexpr float kUnsureWeight = 1.0f / 64.0f;
+
   template <class S, class F, class I>
-  static SeenPart<F> light_seen(S& s, const SssUniforms& u, const PixelTriangle<F>& t, F grid, F step,
-                                I in_front, typename S::M reached) {
+  static SeenPart<S> light_seen(S& s, const SssUniforms& u, const PixelTriangle<F>& t, F grid, F step,
+                                const OpenSamples<I>& samples, typename S::M reached) {
     std::array<F, static_cast<std::size_t>(3 * attribute_count(kVertex))> values;
     for (int v = 0; v < 3; ++v)
       for (int k = 0; k < attribute_count(kVertex); ++k)
         values[static_cast<std::size_t>(v * attribute_count(kVertex) + k)] =
             s.flat_attr(v * corner_scalars(kVertex) + 4 + k);
     const F zero(0.0f);
-    SeenPart<F> part = {zero, zero, zero, {zero, zero, zero}};
+    SeenPart<S> part = {zero, zero, zero, {zero, zero, zero}, {I(0), I(0)}};
     s.loop_each(kShadeBlock, to_int(grid * grid), reached, [&](int i, typename S::M left) HWY_ATTR {
       const Vec2<F> p = place(i, grid, step);
       const I near = near_sample<F, I>(u, p.x * F(1.0f / 256.0f), p.y * F(1.0f / 256.0f)).number;
-      const auto open = I(0) < (lanes::shift_right_by(in_front, near) & I(1));
+      const auto open = I(0) < (lanes::shift_right_by(samples.open, near) & I(1));
       const auto inside = left & open & t.covers(p.x, p.y);
       s.branch(kStoreBlock, inside, [&]() HWY_ATTR {
         SurfacePoint<S> point(s);
         set_point(t, values, p, point);
-        const Vec3<F> c = light_point(s, u, point, kVertex, inside);
+        Vec3<F> c = light_point(s, u, point, kVertex, inside);
+        F weight(1.0f);
+        if (u.by_place()) {
+          const auto sure = I(0) < (lanes::shift_right_by(samples.in_front, near) & I(1));
+          weight = select(sure, weight, F(kUnsureWeight));
+          c = c * weight;
+          add_place(i, grid, inside, part.mask);
+        }
         part.sum = select(inside, part.sum + c, part.sum);
-        const F one = select(inside, F(1.0f), F(0.0f));
-        part.places = part.places + one;
+        const F one = select(inside, weight, F(0.0f));
+        part.weight = part.weight + one;
         part.sum_x = part.sum_x + one * p.x;
         part.sum_y = part.sum_y + one * p.y;
       });
@@ -217,7 +273,7 @@ struct ListShader {
   }
 
   template <class S, class F>
-  static void store_node(S& s, const SssUniforms& u, const NodeColor<S>& color, F z, typename S::M seen) {
+  static void store_node(S& s, const SssUniforms& u, const NodeData<S>& node, F z, typename S::M seen) {
     using I = typename S::I;
     using T = TechniqueCounters;
     const I number = s.atomic_add(kSssCounterBuffer, I(0), I(1), seen);
@@ -229,116 +285,12 @@ struct ListShader {
     const I at = number * I(u.node_words);
     s.store_buffer(kSssNodeBuffer, at, float_to_bits(z), room);
     s.store_buffer(kSssNodeBuffer, at + I(1), next, room);
-    s.store_buffer(kSssNodeBuffer, at + I(2), color.words[0], room);
-    s.uniform_branch(kHighlightSunBlock, u.node_words == 4,
-                     [&]() HWY_ATTR { s.store_buffer(kSssNodeBuffer, at + I(3), color.words[1], room); });
-  }
-};
-
-/// Front to back: sorted by depth, ties by color, so that the order of insertion does not show.
-struct ListResolveShader {
-  using Uniforms = SssUniforms;
-  static constexpr int kMost = 64;
-  enum Block : int { kRead = 1, kSort = 2, kBlend = 3, kLong = 4 };
-
-  template <class S>
-  static void run(S& s, const SssUniforms& u) {
-    using F = typename S::F;
-    using I = typename S::I;
-    Nodes<S> nodes;
-    const int read = read_list(s, u, nodes);
-    const F zero(0.0f);
-    F share = zero;
-    Vec3<F> sum = {zero, zero, zero};
-    for (int i = 0; i < static_cast<int>(s.loop_count(read)); ++i) {
-      const auto open = s.active() & (I(i) < nodes.count) & (share < F(1.0f - 1e-4f));
-      if (!any(open)) break;
-      s.branch(kBlend, open, [&]() HWY_ATTR {
-        const Vec4<F> c = unpack_color<S>(u, nodes.color[static_cast<std::size_t>(i)]);
-        const F g = select(open, min(c.w, F(1.0f) - share), F(0.0f));
-        sum = sum + Vec3<F>{c.x, c.y, c.z} * g;
-        share = share + g;
-      });
-    }
-    blend_over_frame(s, u, {sum.x, sum.y, sum.z, share});
-  }
-
- private:
-  template <class S>
-  struct Nodes {
-    std::array<typename S::F, kMost> z;
-    std::array<NodeColor<S>, kMost> color;
-    typename S::I count;
-  };
-
-  template <class S>
-  static int read_list(S& s, const SssUniforms& u, Nodes<S>& nodes) {
-    using I = typename S::I;
-    const I pixel = s.pixel_y() * I(u.width_px) + s.pixel_x();
-    I next = s.load_buffer(kSssHeadBuffer, pixel, s.active());
-    nodes.count = I(0);
-    const int most = static_cast<int>(s.loop_count(std::min(u.list_nodes_max, kMost)));
-    int read = 0;
-    while (read < most) {
-      const auto more = s.active() & (I(-1) < next);
-      if (!any(more)) break;
-      s.branch(kRead, more, [&]() HWY_ATTR { read_node(s, u, more, read, next, nodes); });
-      ++read;
-    }
-    count_lengths(s, nodes.count, s.active() & (I(-1) < next));
-    return read;
-  }
-
-  template <class S>
-  static void read_node(S& s, const SssUniforms& u, typename S::M more, int read, typename S::I& next,
-                        Nodes<S>& nodes) {
-    using F = typename S::F;
-    using I = typename S::I;
-    const I at = next * I(u.node_words);
-    F z = bits_to_float(s.load_buffer(kSssNodeBuffer, at, more));
-    const I after = s.load_buffer(kSssNodeBuffer, at + I(1), more);
-    NodeColor<S> color{{s.load_buffer(kSssNodeBuffer, at + I(2), more), I(0)}};
-    s.uniform_branch(kLong, u.node_words == 4,
-                     [&]() HWY_ATTR { color.words[1] = s.load_buffer(kSssNodeBuffer, at + I(3), more); });
-    // Each lane inserts its node among the `read` that it has: an exchange with every place in turn.
-    for (int i = 0; i < static_cast<int>(s.loop_count(read)); ++i)
-      s.branch(kSort, more, [&]() HWY_ATTR { exchange(nodes, static_cast<std::size_t>(i), more, z, color); });
-    const auto place = static_cast<std::size_t>(read);
-    nodes.z[place] = z;
-    nodes.color[place] = color;
-    nodes.count = nodes.count + select(more, I(1), I(0));
-    next = select(more, after, next);
-  }
-
-  template <class S, class F>
-  static void exchange(Nodes<S>& nodes, std::size_t i, typename S::M more, F& z, NodeColor<S>& color) {
-    const NodeColor<S> there = nodes.color[i];
-    const F there_z = nodes.z[i];
-    const auto same_z = !((z < there_z) | (there_z < z));
-    const auto first = (color.words[0] < there.words[0]) |
-                       ((color.words[0] == there.words[0]) & (color.words[1] < there.words[1]));
-    const auto swap = more & ((z < there_z) | (same_z & first));
-    nodes.z[i] = select(swap, z, there_z);
-    z = select(swap, there_z, z);
-    for (int w = 0; w < 2; ++w) {
-      nodes.color[i].words[w] = select(swap, color.words[w], there.words[w]);
-      color.words[w] = select(swap, there.words[w], color.words[w]);
-    }
-  }
-
-  template <class S, class M>
-  static void count_lengths(S& s, typename S::I count, M longer) {
-    using I = typename S::I;
-    using T = TechniqueCounters;
-    const auto between = [&](int low, int high)
-                             HWY_ATTR { return s.active() & (I(low - 1) < count) & (count < I(high + 1)); };
-    s.count(&T::sss_list_1_pixels, between(1, 1));
-    s.count(&T::sss_list_2_to_3_pixels, between(2, 3));
-    s.count(&T::sss_list_4_to_7_pixels, between(4, 7));
-    s.count(&T::sss_list_8_to_15_pixels, between(8, 15));
-    s.count(&T::sss_list_16_to_31_pixels, between(16, 31));
-    s.count(&T::sss_list_from_32_pixels, between(32, kMost));
-    s.count(&T::sss_truncated_pixels, longer);
+    s.store_buffer(kSssNodeBuffer, at + I(2), node.words[0], room);
+    s.uniform_branch(kHighlightSunBlock, u.node_words > 3,
+                     [&]() HWY_ATTR { s.store_buffer(kSssNodeBuffer, at + I(3), node.words[1], room); });
+    if (u.by_place())
+      for (int w = 2; w < NodeData<S>::kWords; ++w)
+        s.store_buffer(kSssNodeBuffer, at + I(w + 2), node.words[w], room);
   }
 };
 
@@ -348,9 +300,6 @@ void run_boxes(SssVertex vertex, pipeline::GeometryBatch& b, const void* u) {
 void run_lists(SssVertex vertex, pipeline::FragmentBatch& b, const void* u) {
   with_vertex(vertex, [&](auto v) HWY_ATTR { lanes::run_fragment_shader<ListShader<v()>>(b, u); });
 }
-void run_list_resolve(pipeline::FragmentBatch& b, const void* u) {
-  lanes::run_fragment_shader<ListResolveShader>(b, u);
-}
 
 }  // namespace hwsim::algos::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -359,7 +308,6 @@ HWY_AFTER_NAMESPACE();
 namespace hwsim::algos {
 HWY_EXPORT(run_boxes);
 HWY_EXPORT(run_lists);
-HWY_EXPORT(run_list_resolve);
 
 namespace {
 using pipeline::FragmentBatch;
@@ -378,9 +326,11 @@ void call_lists(FragmentBatch& b, const void* u) {
 }
 
 template <SssVertex kVertex>
-FragmentProgram describe_list() {
+FragmentProgram describe_list(bool by_place) {
+  SssUniforms u;
+  u.node_words = by_place ? kSssPlaceNodeWords : 4;
   FragmentProgram program = pipeline::HWY_NAMESPACE::describe_fragment_shader<shaders::ListShader<kVertex>>(
-      "sss_list", call_lists<kVertex>);
+      by_place ? "sss_place_list" : "sss_list", call_lists<kVertex>, u);
   program.varying_scalars = shaders::box_scalars(kVertex);
   return program;
 }
@@ -394,18 +344,10 @@ const GeometryProgram& sss_boxes_program(SssVertex vertex) {
   return programs[static_cast<std::size_t>(vertex)];
 }
 
-const FragmentProgram& sss_list_program(SssVertex vertex) {
-  static const auto programs = for_each_vertex([](auto v) { return describe_list<v()>(); });
-  return programs[static_cast<std::size_t>(vertex)];
-}
-
-const FragmentProgram& sss_list_resolve_program() {
-  static const FragmentProgram program =
-      pipeline::HWY_NAMESPACE::describe_fragment_shader<shaders::ListResolveShader>(
-          "sss_list_resolve", [](FragmentBatch& b, const void* u) {
-            HWY_DYNAMIC_DISPATCH(run_list_resolve)(b, u);
-          });
-  return program;
+const FragmentProgram& sss_list_program(SssVertex vertex, bool by_place) {
+  static const auto without = for_each_vertex([](auto v) { return describe_list<v()>(false); });
+  static const auto with = for_each_vertex([](auto v) { return describe_list<v()>(true); });
+  return (by_place ? with : without)[static_cast<std::size_t>(vertex)];
 }
 
 }  // namespace hwsim::algos

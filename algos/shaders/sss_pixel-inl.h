@@ -48,14 +48,33 @@ struct PixelTriangle {
 };
 
 /// Nodes: color and covered 64ths of the pixel, depth, the next node. 12 bytes: 8 bits of the color's square
-/// root each; 16 bytes: 16 bits linear.
+/// root each; 16 bytes: 16 bits linear; 32 bytes: and a bit for each of the pixel's 8x8 places, and the
+/// change of depth for a place to the right and down (as in Jouppi and Chang's Z3, 1999).
 template <class S>
-struct NodeColor {
-  typename S::I words[2];
+struct NodeData {
+  static constexpr int kColor = 0, kMask = 2, kSlope = 4, kWords = 6;
+  typename S::I words[kWords];
 };
 
+/// Adds place i of a grid of 2, 4 or 8 to the lanes `inside`; on coarser grids than 8x8 it stands for
+/// several.
+template <class F, class M, class I>
+void add_place(int i, F grid, M inside, I (&mask)[2]) {
+  const auto bits = [&](int side, int w) {
+    const int wide = 8 / side, x = i % side * wide, y = i / side * wide - 4 * w;
+    std::uint32_t word = 0;
+    for (int row = std::max(y, 0); row < std::min(y + wide, 4); ++row)
+      word |= ((1u << wide) - 1u) << (8 * row + x);
+    return I(static_cast<std::int32_t>(word));
+  };
+  for (int w = 0; w < 2; ++w) {
+    const I coarse = select(grid < F(3.0f), bits(2, w), bits(4, w));
+    mask[w] = mask[w] | select(inside, select(grid > F(6.0f), bits(8, w), coarse), I(0));
+  }
+}
+
 template <class S>
-NodeColor<S> pack_color(const SssUniforms& u, const Vec3<typename S::F>& c, typename S::F covered) {
+NodeData<S> pack_color(const SssUniforms& u, const Vec3<typename S::F>& c, typename S::F covered) {
   using F = typename S::F;
   using I = typename S::I;
   const F range(1.0f / u.radiance_max);
@@ -64,15 +83,16 @@ NodeColor<S> pack_color(const SssUniforms& u, const Vec3<typename S::F>& c, type
     const auto root = [&](F v) HWY_ATTR { return code(sqrt(v * range), 255.0f); };
     const I word =
         root(c.x) | shift_left<8>(root(c.y)) | shift_left<16>(root(c.z)) | shift_left<24>(to_int(covered));
-    return {{word, I(0)}};
+    return {{word, I(0), I(0), I(0), I(0), I(0)}};
   }
   const auto linear = [&](F v) HWY_ATTR { return code(v * range, 65535.0f); };
-  return {{linear(c.x) | shift_left<16>(linear(c.y)), linear(c.z) | shift_left<16>(to_int(covered))}};
+  return {{linear(c.x) | shift_left<16>(linear(c.y)), linear(c.z) | shift_left<16>(to_int(covered)), I(0),
+           I(0), I(0), I(0)}};
 }
 
 /// Color, and the pixel's covered part.
 template <class S>
-Vec4<typename S::F> unpack_color(const SssUniforms& u, const NodeColor<S>& node) {
+Vec4<typename S::F> unpack_color(const SssUniforms& u, const NodeData<S>& node) {
   using F = typename S::F;
   using I = typename S::I;
   const F range(u.radiance_max), part(1.0f / 64.0f);
