@@ -128,9 +128,11 @@ void add_marks(FrameGraph& graph, SssFrame& f) {
   pass.color = {f.marks};
   pass.depth = f.base.depth;
   pass.depth_read_only = true;
+  auto uniforms = std::make_shared<SssUniforms>(f.uniforms);
+  uniforms->counted = false;
   add_sss_batches(pass, f, [&](DrawBatch& batch, SssVertex vertex) {
     batch.geometry = &sss_marks_program(vertex);
-    batch.geometry_uniforms = std::make_shared<SssUniforms>(f.uniforms);
+    batch.geometry_uniforms = uniforms;
     batch.fragment = &sss_mark_program();
     batch.fragment_uniforms = batch.geometry_uniforms;
     batch.state.depth = {true, false, Compare::equal};

@@ -60,6 +60,7 @@ struct SssUniforms {
   float triangle_px = 4.0f, highlight_px = 1.0f;
   bool early_exit = true;
   float threshold = 1.0f / 255.0f;
+  bool counted = true;          ///< triangles count here: not where they are chosen once more, for marks
   float exponent_scale = 1.0f;  ///< Phong's exponent over the material's: a quarter for Blinn-Phong's
   bool normalized = false;      ///< the lobe has the factor (s + 8) / (8 pi)
 

@@ -93,55 +93,46 @@ HWY_EXPORT(run_composite);
 HWY_EXPORT(run_fixed_composite);
 HWY_EXPORT(run_float_composite);
 
-namespace {
-using pipeline::FragmentBatch;
-using pipeline::FragmentProgram;
-using pipeline::GeometryBatch;
-using pipeline::GeometryProgram;
-using pipeline::HWY_NAMESPACE::describe_fragment_shader;
-namespace shaders = HWY_NAMESPACE;
-
-template <SssVertex kVertex>
-void call_marks(GeometryBatch& b, const void* u) {
-  HWY_DYNAMIC_DISPATCH(run_marks)(kVertex, b, u);
-}
-}  // namespace
-
-const GeometryProgram& sss_marks_program(SssVertex vertex) {
+const pipeline::GeometryProgram& sss_marks_program(SssVertex vertex) {
   static const auto programs = for_each_vertex([](auto v) {
-    return pipeline::HWY_NAMESPACE::describe_geometry_shader<shaders::MarksShader<v()>>("sss_marks",
-                                                                                        call_marks<v()>);
+    return pipeline::HWY_NAMESPACE::describe_geometry_shader<HWY_NAMESPACE::MarksShader<v()>>(
+        "sss_marks", [](pipeline::GeometryBatch& b, const void* u) {
+          HWY_DYNAMIC_DISPATCH(run_marks)(decltype(v)::value, b, u);
+        });
   });
   return programs[static_cast<std::size_t>(vertex)];
 }
 
-const FragmentProgram& sss_mark_program() {
-  static const FragmentProgram program =
-      describe_fragment_shader<shaders::MarkShader>("sss_mark", [](FragmentBatch& b, const void* u) {
-        HWY_DYNAMIC_DISPATCH(run_mark)
-        (b, u);
-      });
+const pipeline::FragmentProgram& sss_mark_program() {
+  static const pipeline::FragmentProgram program =
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::MarkShader>(
+          "sss_mark", [](pipeline::FragmentBatch& b, const void* u) {
+            HWY_DYNAMIC_DISPATCH(run_mark)
+            (b, u);
+          });
   return program;
 }
 
-const FragmentProgram& sss_composite_program() {
-  static const FragmentProgram program = describe_fragment_shader<shaders::CompositeShader>(
-      "sss_composite", [](FragmentBatch& b, const void* u) {
-        HWY_DYNAMIC_DISPATCH(run_composite)
-        (b, u);
-      });
+const pipeline::FragmentProgram& sss_composite_program() {
+  static const pipeline::FragmentProgram program =
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::CompositeShader>(
+          "sss_composite", [](pipeline::FragmentBatch& b, const void* u) {
+            HWY_DYNAMIC_DISPATCH(run_composite)
+            (b, u);
+          });
   return program;
 }
 
-const FragmentProgram& sss_sum_composite_program(bool floats) {
-  static const FragmentProgram programs[] = {
-      describe_fragment_shader<shaders::SumCompositeShader<false>>("sss_fixed_composite",
-                                                                   [](FragmentBatch& b, const void* u) {
-                                                                     HWY_DYNAMIC_DISPATCH(run_fixed_composite)
-                                                                     (b, u);
-                                                                   }),
-      describe_fragment_shader<shaders::SumCompositeShader<true>>(
-          "sss_float_composite", [](FragmentBatch& b, const void* u) {
+const pipeline::FragmentProgram& sss_sum_composite_program(bool floats) {
+  static const pipeline::FragmentProgram programs[] = {
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::SumCompositeShader<false>>(
+          "sss_fixed_composite",
+          [](pipeline::FragmentBatch& b, const void* u) {
+            HWY_DYNAMIC_DISPATCH(run_fixed_composite)
+            (b, u);
+          }),
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::SumCompositeShader<true>>(
+          "sss_float_composite", [](pipeline::FragmentBatch& b, const void* u) {
             HWY_DYNAMIC_DISPATCH(run_float_composite)(b, u);
           })};
   return programs[floats ? 1 : 0];

@@ -7,7 +7,7 @@
 #define HWY_TARGET_INCLUDE "algos/shaders/sss_compute.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
-#include "algos/shaders/sss_view-inl.h"
+#include "algos/shaders/sss_pattern-inl.h"
 #include "pipeline/shade/compute_lanes-inl.h"
 #include "pipeline/shade/count_fragment-inl.h"
 

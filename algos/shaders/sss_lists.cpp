@@ -310,41 +310,34 @@ HWY_EXPORT(run_boxes);
 HWY_EXPORT(run_lists);
 
 namespace {
-using pipeline::FragmentBatch;
-using pipeline::FragmentProgram;
-using pipeline::GeometryBatch;
-using pipeline::GeometryProgram;
-namespace shaders = HWY_NAMESPACE;
 
 template <SssVertex kVertex>
-void call_boxes(GeometryBatch& b, const void* u) {
-  HWY_DYNAMIC_DISPATCH(run_boxes)(kVertex, b, u);
-}
-template <SssVertex kVertex>
-void call_lists(FragmentBatch& b, const void* u) {
-  HWY_DYNAMIC_DISPATCH(run_lists)(kVertex, b, u);
-}
-
-template <SssVertex kVertex>
-FragmentProgram describe_list(bool by_place) {
+pipeline::FragmentProgram describe_list(bool by_place) {
   SssUniforms u;
   u.node_words = by_place ? kSssPlaceNodeWords : 4;
-  FragmentProgram program = pipeline::HWY_NAMESPACE::describe_fragment_shader<shaders::ListShader<kVertex>>(
-      by_place ? "sss_place_list" : "sss_list", call_lists<kVertex>, u);
-  program.varying_scalars = shaders::box_scalars(kVertex);
+  pipeline::FragmentProgram program =
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::ListShader<kVertex>>(
+          by_place ? "sss_place_list" : "sss_list",
+          [](pipeline::FragmentBatch& b, const void* uniforms) {
+            HWY_DYNAMIC_DISPATCH(run_lists)(kVertex, b, uniforms);
+          },
+          u);
+  program.varying_scalars = HWY_NAMESPACE::box_scalars(kVertex);
   return program;
 }
 }  // namespace
 
-const GeometryProgram& sss_boxes_program(SssVertex vertex) {
+const pipeline::GeometryProgram& sss_boxes_program(SssVertex vertex) {
   static const auto programs = for_each_vertex([](auto v) {
-    return pipeline::HWY_NAMESPACE::describe_geometry_shader<shaders::BoxShader<v()>>("sss_boxes",
-                                                                                      call_boxes<v()>);
+    return pipeline::HWY_NAMESPACE::describe_geometry_shader<HWY_NAMESPACE::BoxShader<v()>>(
+        "sss_boxes", [](pipeline::GeometryBatch& b, const void* u) {
+          HWY_DYNAMIC_DISPATCH(run_boxes)(decltype(v)::value, b, u);
+        });
   });
   return programs[static_cast<std::size_t>(vertex)];
 }
 
-const FragmentProgram& sss_list_program(SssVertex vertex, bool by_place) {
+const pipeline::FragmentProgram& sss_list_program(SssVertex vertex, bool by_place) {
   static const auto without = for_each_vertex([](auto v) { return describe_list<v()>(false); });
   static const auto with = for_each_vertex([](auto v) { return describe_list<v()>(true); });
   return (by_place ? with : without)[static_cast<std::size_t>(vertex)];

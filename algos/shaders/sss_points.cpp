@@ -8,6 +8,7 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include "algos/shaders/sss_geometry-inl.h"
+#include "algos/shaders/sss_pattern-inl.h"
 #include "pipeline/shade/count_fragment-inl.h"
 #include "pipeline/shade/fragment_lanes-inl.h"
 
@@ -153,50 +154,41 @@ HWY_EXPORT(run_points);
 HWY_EXPORT(run_point_shading);
 
 namespace {
-using pipeline::FragmentBatch;
-using pipeline::FragmentProgram;
-using pipeline::GeometryBatch;
-using pipeline::GeometryProgram;
-namespace shaders = HWY_NAMESPACE;
 
 constexpr int kPointsMax = 256;  // the largest budget of a triangle
 
-template <SssVertex kVertex>
-void call_points(GeometryBatch& b, const void* u) {
-  HWY_DYNAMIC_DISPATCH(run_points)(kVertex, b, u);
-}
-template <SssVertex kVertex>
-void call_shading(FragmentBatch& b, const void* u) {
-  HWY_DYNAMIC_DISPATCH(run_point_shading)(kVertex, b, u);
-}
-
 /// By limit: programs are shared, so there is one for each.
 template <SssVertex kVertex>
-std::vector<GeometryProgram> describe_points() {
-  GeometryProgram program = pipeline::HWY_NAMESPACE::describe_geometry_shader<shaders::PointShader<kVertex>>(
-      "sss_points", call_points<kVertex>);
-  std::vector<GeometryProgram> all;
+std::vector<pipeline::GeometryProgram> describe_points() {
+  pipeline::GeometryProgram program =
+      pipeline::HWY_NAMESPACE::describe_geometry_shader<HWY_NAMESPACE::PointShader<kVertex>>(
+          "sss_points", [](pipeline::GeometryBatch& b, const void* u) {
+            HWY_DYNAMIC_DISPATCH(run_points)(kVertex, b, u);
+          });
+  std::vector<pipeline::GeometryProgram> all;
   for (program.max_vertices = 1; program.max_vertices <= kPointsMax; ++program.max_vertices)
     all.push_back(program);
   return all;
 }
 
 template <SssVertex kVertex>
-FragmentProgram describe_shading() {
-  FragmentProgram program =
-      pipeline::HWY_NAMESPACE::describe_fragment_shader<shaders::PointShadingShader<kVertex>>(
-          "sss_point", call_shading<kVertex>);
-  program.varying_scalars = shaders::point_scalars(kVertex);
+pipeline::FragmentProgram describe_shading() {
+  pipeline::FragmentProgram program =
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::PointShadingShader<kVertex>>(
+          "sss_point", [](pipeline::FragmentBatch& b, const void* u) {
+            HWY_DYNAMIC_DISPATCH(run_point_shading)(kVertex, b, u);
+          });
+  program.varying_scalars = HWY_NAMESPACE::point_scalars(kVertex);
   return program;
 }
 }  // namespace
 
-const GeometryProgram& sss_points_program(SssVertex vertex, int points_max) {
+const pipeline::GeometryProgram& sss_points_program(SssVertex vertex, int points_max) {
   static const auto programs = for_each_vertex([](auto v) { return describe_points<v()>(); });
   return programs[static_cast<std::size_t>(vertex)].at(static_cast<std::size_t>(points_max) - 1);
 }
 
-const FragmentProgram& sss_point_shading_program(SssVertex vertex) {
+const pipeline::FragmentProgram& sss_point_shading_program(SssVertex vertex) {
   static const auto programs = for_each_vertex([](auto v) { return describe_shading<v()>(); });
   return programs[static_cast<std::size_t>(vertex)];
 }

@@ -149,6 +149,19 @@ double light_of(const Image& image) {
   return sum;
 }
 
+// Marks choose triangles once more, and draw none of their points.
+TEST(Sss, MarksDoNotCountTrianglesAgain) {
+  const auto scene = rods();
+  for (const std::string variant : kVariants) {
+    const TechniqueCounters frame = counters(run(scene, variant + ":rest=frame")),
+                            others = counters(run(scene, variant));
+    EXPECT_GT(frame.sss_processed_primitives, 0u) << variant;
+    EXPECT_EQ(others.sss_tested_primitives, frame.sss_tested_primitives) << variant;
+    EXPECT_EQ(others.sss_processed_primitives, frame.sss_processed_primitives) << variant;
+    EXPECT_EQ(others.sss_shaded_samples, frame.sss_shaded_samples) << variant;
+  }
+}
+
 // The paper blends samples over the whole frame, which holds their triangle already: a half covered pixel
 // shows 3/4 of it. Over the frame's other triangles it keeps its area.
 TEST(Sss, ASilhouetteKeepsItsAreaOverTheOtherTriangles) {
