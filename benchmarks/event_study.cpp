@@ -14,13 +14,11 @@
 #include <vector>
 
 #include "algos/technique.h"
-#include "hwsim/base/diagnostics.h"
 #include "hwsim/config/every_feature.h"
-#include "pipeline/base/file_io.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/emulate/fragment_batch.h"
 #include "pipeline/emulate/gpu_image.h"
-#include "pipeline/scene/scene_source.h"
+#include "study_input.h"
 
 namespace hwsim::benchmarks {
 namespace {
@@ -101,8 +99,6 @@ void read_records(FragmentBatch& batch, const void* uniforms) {
     return std::max(events, 1.0f);
   });
 }
-
-using ScenePointer = std::shared_ptr<const pipeline::Scene>;
 
 /// A technique's frame, and a pass after it that shows the events instead of the picture.
 struct Probe {
@@ -216,7 +212,7 @@ Means means(const Events& events, const Events& reference, const Study& study, d
           complex_worst / std::max(complex_waves, 1.0)};
 }
 
-void report(const ScenePointer& scene, const Study& study) {
+void print_events(const ScenePointer& scene, const Study& study) {
   const std::vector<std::pair<const char*, const char*>> techniques = {
       {"reference", kReference}, {"agaa", kAggregates}, {"top", kTop}, {"merge", kMerge}};
   Events reference;
@@ -232,18 +228,13 @@ void report(const ScenePointer& scene, const Study& study) {
   std::printf("\"complex_share\": %.6f, \"complex_wave_share\": %.6f}\n", share, wave_share);
 }
 
-Study parse(int argc, char** argv) {
-  Study study;
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    if (argument.starts_with("--jobs="))
-      study.jobs = std::max(1, std::atoi(argument.c_str() + 7));
-    else if (argument.starts_with("--size="))
-      std::sscanf(argument.c_str() + 7, "%dx%d", &study.width_px, &study.height_px);
-    else
-      study.scene = argument;
-  }
-  return study;
+/// False where an argument is not understood.
+bool parse(const std::string& argument, Study& study) {
+  if (argument.starts_with("--jobs=")) return (study.jobs = std::atoi(argument.c_str() + 7)) > 0;
+  if (argument.starts_with("--size="))
+    return std::sscanf(argument.c_str() + 7, "%dx%d", &study.width_px, &study.height_px) == 2;
+  study.scene = argument;
+  return !argument.starts_with("-");
 }
 
 }  // namespace
@@ -252,15 +243,17 @@ Study parse(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace hwsim;
   using namespace hwsim::benchmarks;
-  const Study study = parse(argc, argv);
+  Study study;
+  bool understood = argc > 1;
+  for (int i = 1; i < argc; ++i) understood = understood && parse(argv[i], study);
+  if (!understood) {
+    std::fprintf(stderr, "usage: event_study [--size=WIDTHxHEIGHT] [--jobs=N] SCENE\n");
+    return 2;
+  }
   try {
-    const ScenePointer scene = std::make_shared<const pipeline::Scene>(
-        pipeline::open_scene(study.scene, pipeline::default_cache_directory()));
-    report(scene, study);
+    print_events(open_study_scene(study.scene), study);
   } catch (const InputError& error) {
-    for (const Diagnostic& d : error.diagnostics())
-      std::fprintf(stderr, "%s: %s\n", d.code.c_str(), d.message.c_str());
-    return 3;
+    return report(error);
   }
   return 0;
 }
