@@ -136,31 +136,31 @@ std::vector<Diagnostic> result_warnings(const PointResult& point) {
   std::vector<Diagnostic> warnings;
   const TechniqueCounters n = total(point.emulation->trace).technique;
   const std::string name = algos::technique_text(*point.technique);
-  const auto warn = [&](std::string message, std::string help) {
-    warnings.push_back({Severity::warning, "T101", std::move(message), {}, {}, {}, std::move(help)});
+  const auto tell = [&](Severity severity, std::string code, std::string message, std::string help) {
+    Diagnostic& d = warnings.emplace_back();
+    d.severity = severity;
+    d.code = std::move(code);
+    d.message = std::move(message);
+    d.help = std::move(help);
   };
   if (n.sss_dropped_fragments > 0)
-    warn(fmt::format("{}: {} of {} fragments found the lists full: the image lacks them", name,
+    tell(Severity::warning, "T101",
+         fmt::format("{}: {} of {} fragments found the lists full: the image lacks them", name,
                      n.sss_dropped_fragments, n.sss_dropped_fragments + n.sss_stored_fragments),
          fmt::format("capacity_nodes={} holds all", n.sss_dropped_fragments + n.sss_stored_fragments));
   if (n.sss_truncated_pixels > 0)
-    warn(fmt::format("{}: the lists of {} pixels are longer than the resolve reads", name,
+    tell(Severity::warning, "T101",
+         fmt::format("{}: the lists of {} pixels are longer than the resolve reads", name,
                      n.sss_truncated_pixels),
          "list_cap reads up to 64");
   if (const auto& [info, parameters] = point.technique->base(); info->id == "agaa") {
     const int aggregates = 1 + static_cast<int>(parameters.at("c"));  // the index of 1|2|3|4
     const int samples = aggregate_samples(point.emulation->trace);
     if (samples > aggregates)
-      warnings.push_back(
-          {Severity::note,
-           "T102",
-           fmt::format("{}: color samples divide raster samples: {} aggregates take the memory "
-                       "of {}",
-                       name, aggregates, samples),
-           {},
-           {},
-           {},
-           "accumulate=atomics stores them without a gap"});
+      tell(Severity::note, "T102",
+           fmt::format("{}: color samples divide raster samples: {} aggregates take the memory of {}", name,
+                       aggregates, samples),
+           "accumulate=atomics stores them without a gap");
   }
   return warnings;
 }
