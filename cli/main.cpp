@@ -13,6 +13,8 @@ template <class... Functions>
 struct Overloaded : Functions... {
   using Functions::operator()...;
 };
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;  // clang 14 does not deduce it from the aggregate
 
 CommonOptions common_of(const Command& command) {
   return std::visit(Overloaded{[](const PrintText&) { return CommonOptions{}; },
