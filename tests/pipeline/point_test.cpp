@@ -64,7 +64,7 @@ Emulation run(const Case& c, bool points) {
     }
     for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
       positions.push_back(clip_position(p.x + x * c.half, p.y + y * c.half, p.z));
-    for (const std::uint32_t i : {0, 1, 2, 0, 2, 3}) indices.push_back(first + i);
+    for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) indices.push_back(first + i);
   }
   test::SampleFrame frame(test::share(test::clip_space_scene(std::move(positions), std::move(indices))),
                           kSize, kSize, c.samples);
