@@ -63,7 +63,10 @@ Blueprint make(const Parameters& p) {
   fur.length_m = p.number("length_m");
   fur.width_m = p.number("width_m");
   fur.segments = p.count("segments");
-  for (dvec3& wave : fur.wave) wave = random_direction(random) * random.uniform(3.0, 6.0);
+  for (dvec3& wave : fur.wave) {  // two draws in one expression would come in the compiler's order
+    const double frequency = random.uniform(3.0, 6.0);
+    wave = random_direction(random) * frequency;
+  }
   for (int i = 0; i < 3; ++i) fur.phase[i] = random.uniform(0.0, 2 * kPi);
   Blueprint out;
   out.looks = {{.name = "skin", .color = {0.25, 0.16, 0.1}, .roughness = 0.9}};
