@@ -1,7 +1,7 @@
 #pragma once
 // A run of draws whose triangles are set up, binned and rasterized together. Segments bound memory; they
-// follow each other in submission order, so the image does not depend on where they are cut; lanes issued do by
-// a little, for a batch of quads ends with its segment.
+// follow each other in submission order, so the image does not depend on where they are cut; lanes issued do
+// by a little, for a batch of quads ends with its segment.
 #include <cstdint>
 #include <vector>
 
