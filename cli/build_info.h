@@ -4,7 +4,7 @@
 namespace hwsim::cli {
 
 /// Changes whenever the same input may give other numbers.
-inline constexpr int kModelVersion = 1;
+inline constexpr int kModelVersion = 2;
 
 struct BuildInfo {
   std::string_view version, commit, compiler, build_type, vector_targets;
