@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "hwsim/format.h"
+#include "hwsim/trace/format.h"
 
 namespace hwsim::algos {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hwsim/config/gpu_features.h"
+#include "hwsim/gpu/gpu_features.h"
 #include "pipeline/graph/frame_graph.h"
 
 namespace hwsim::algos {

@@ -13,9 +13,9 @@
 #include <sstream>
 #include <thread>
 
-#include "hwsim/config/gpu_keys.h"
-#include "hwsim/timing/timing.h"
-#include "hwsim/trace_file.h"
+#include "hwsim/engines/timing.h"
+#include "hwsim/gpu/gpu_keys.h"
+#include "hwsim/trace/trace_file.h"
 #include "pipeline/emulate/emulator.h"
 #include "study_input.h"
 #include "study_report.h"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "algos/technique.h"
-#include "hwsim/config/every_feature.h"
+#include "hwsim/gpu/every_feature.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/emulate/fragment_batch.h"
 #include "pipeline/emulate/gpu_image.h"

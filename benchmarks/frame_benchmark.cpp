@@ -11,8 +11,8 @@
 #include <cstdio>
 #include <cstring>
 
-#include "hwsim/config/gpu_keys.h"
-#include "hwsim/timing/timing.h"
+#include "hwsim/engines/timing.h"
+#include "hwsim/gpu/gpu_keys.h"
 #include "pipeline/emulate/emulator.h"
 #include "study_input.h"
 

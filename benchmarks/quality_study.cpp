@@ -19,7 +19,7 @@
 #include "algos/reference_frame.h"
 #include "algos/technique.h"
 #include "hwsim/base/diagnostics.h"
-#include "hwsim/config/every_feature.h"
+#include "hwsim/gpu/every_feature.h"
 #include "pipeline/base/file_io.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/image/metrics.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hwsim/base/diagnostics.h"
-#include "hwsim/config/gpu_config.h"
+#include "hwsim/gpu/gpu_config.h"
 #include "pipeline/graph/frame_graph.h"
 #include "pipeline/scene/scene.h"
 

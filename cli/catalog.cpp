@@ -8,8 +8,8 @@
 #include "algos/technique.h"
 #include "cli/files.h"
 #include "hwsim/base/csv.h"
-#include "hwsim/config/gpu_config.h"
-#include "hwsim/counters.h"
+#include "hwsim/gpu/gpu_config.h"
+#include "hwsim/trace/counters.h"
 #include "pipeline/scene/scene_source.h"
 
 namespace hwsim::cli {

@@ -9,7 +9,7 @@
 #include "cli/messages.h"
 #include "cli/progress.h"
 #include "cli/results.h"
-#include "hwsim/timing/sensitivity.h"
+#include "hwsim/engines/sensitivity.h"
 
 namespace hwsim::cli {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "hwsim/config/gpu_config.h"
+#include "hwsim/gpu/gpu_config.h"
 
 namespace hwsim::cli {
 namespace {

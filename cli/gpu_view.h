@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "cli/table.h"
-#include "hwsim/config/gpu_config.h"
+#include "hwsim/gpu/gpu_config.h"
 
 namespace hwsim::cli {
 

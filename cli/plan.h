@@ -7,9 +7,9 @@
 
 #include "algos/technique.h"
 #include "cli/options.h"
-#include "hwsim/config/gpu_config.h"
 #include "hwsim/config/toml_value.h"
-#include "hwsim/timing/timing.h"
+#include "hwsim/engines/timing.h"
+#include "hwsim/gpu/gpu_config.h"
 #include "pipeline/emulate/emulator.h"
 
 namespace hwsim::cli {

@@ -10,7 +10,7 @@
 #include "cli/cache.h"
 #include "cli/run_file.h"
 #include "hwsim/base/byte_codec.h"
-#include "hwsim/trace_file.h"
+#include "hwsim/trace/trace_file.h"
 
 namespace hwsim::cli {
 namespace {

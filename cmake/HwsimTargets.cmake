@@ -37,7 +37,7 @@ else()
 endif()
 
 # hwsim_library(NAME sources...): static library hwsim_NAME, alias hwsim::NAME. Its folder's sources include each
-# other from the project's root ("hwsim/work_trace.h").
+# other from the project's root ("hwsim/trace/work_trace.h").
 function(hwsim_library name)
   add_library(hwsim_${name} STATIC ${ARGN})
   add_library(hwsim::${name} ALIAS hwsim_${name})

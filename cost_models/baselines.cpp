@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cost_models/statistics.h"
-#include "hwsim/timing/timing.h"
+#include "hwsim/engines/timing.h"
 
 namespace hwsim::cost_models {
 

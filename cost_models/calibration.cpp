@@ -6,8 +6,8 @@
 
 #include "cost_models/covariance.h"
 #include "cost_models/predictor.h"
-#include "hwsim/config/gpu_keys.h"
-#include "hwsim/config/gpu_show.h"
+#include "hwsim/gpu/gpu_keys.h"
+#include "hwsim/gpu/gpu_show.h"
 
 namespace hwsim::cost_models {
 namespace {

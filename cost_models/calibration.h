@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cost_models/validation.h"
-#include "hwsim/timing/timing.h"
+#include "hwsim/engines/timing.h"
 
 namespace hwsim::cost_models {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "hwsim/trace_file.h"
+#include "hwsim/trace/trace_file.h"
 
 namespace hwsim::cost_models {
 namespace {

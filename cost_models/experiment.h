@@ -10,7 +10,7 @@
 #include "cost_models/parameters.h"
 #include "cost_models/published.h"
 #include "hwsim/base/diagnostics.h"
-#include "hwsim/work_trace.h"
+#include "hwsim/trace/work_trace.h"
 
 namespace hwsim::cost_models {
 

@@ -7,7 +7,7 @@
 
 #include "hwsim/base/csv.h"
 #include "hwsim/base/diagnostics.h"
-#include "hwsim/config/gpu_keys.h"
+#include "hwsim/gpu/gpu_keys.h"
 
 namespace hwsim::cost_models {
 namespace {

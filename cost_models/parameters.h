@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hwsim/config/gpu_config.h"
+#include "hwsim/gpu/gpu_config.h"
 
 namespace hwsim::cost_models {
 

@@ -9,7 +9,7 @@
 #include <thread>
 #include <tuple>
 
-#include "hwsim/config/gpu_keys.h"
+#include "hwsim/gpu/gpu_keys.h"
 #include "hwsim/timing/time_pass.h"
 
 namespace hwsim::cost_models {

@@ -3,7 +3,7 @@
 #include <array>
 #include <glm/glm.hpp>
 
-#include "hwsim/format.h"
+#include "hwsim/trace/format.h"
 #include "pipeline/graph/pipeline_state.h"
 #include "pipeline/shade/lighting.h"
 #include "pipeline/shade/program.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "hwsim/config/gpu_rates.h"
-#include "hwsim/work_trace.h"
+#include "hwsim/gpu/gpu_rates.h"
+#include "hwsim/trace/work_trace.h"
 
 namespace hwsim {
 

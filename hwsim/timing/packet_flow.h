@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "hwsim/config/gpu_rates.h"
+#include "hwsim/gpu/gpu_rates.h"
 
 namespace hwsim {
 

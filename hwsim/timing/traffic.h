@@ -6,10 +6,10 @@
 #include <array>
 #include <cstddef>
 
-#include "hwsim/config/gpu_rates.h"
+#include "hwsim/engines/timing.h"
+#include "hwsim/gpu/gpu_rates.h"
 #include "hwsim/timing/compression.h"
-#include "hwsim/timing/timing.h"
-#include "hwsim/work_trace.h"
+#include "hwsim/trace/work_trace.h"
 
 namespace hwsim {
 

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "hwsim/format.h"
+#include "hwsim/trace/format.h"
 
 namespace hwsim::pipeline {
 

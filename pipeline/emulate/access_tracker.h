@@ -1,12 +1,12 @@
 #pragma once
 // What a worker notes about the memory accesses of a pass: accesses to a sample of all blocks, for the reuse
-// distances of hwsim/reuse.h, and how many atomics went to each address.
+// distances of hwsim/trace/reuse.h, and how many atomics went to each address.
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "hwsim/reuse.h"
+#include "hwsim/trace/reuse.h"
 
 namespace hwsim::pipeline {
 
@@ -18,7 +18,7 @@ struct AccessTracker {
 
   BlockKinds kinds;
   std::vector<BlockAccess> accesses;
-  /// Texture accesses by the number of first-level cache sizes (hwsim/reuse.h) that miss them.
+  /// Texture accesses by the number of first-level cache sizes (hwsim/trace/reuse.h) that miss them.
   std::array<std::uint64_t, kCacheSizes + 1> l1_missing{};
   /// Two addresses in one slot add up: that overrates the most frequent address by a 16384th of all atomics,
   /// which takes a small part of their time where addresses differ.

@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-#include "hwsim/counters.h"
+#include "hwsim/trace/counters.h"
 #include "pipeline/emulate/gpu_image.h"
 
 namespace hwsim::pipeline {

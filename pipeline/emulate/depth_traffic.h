@@ -3,7 +3,7 @@
 #include <array>
 #include <span>
 
-#include "hwsim/counters.h"
+#include "hwsim/trace/counters.h"
 #include "pipeline/depth/depth_expand.h"
 
 namespace hwsim::pipeline {

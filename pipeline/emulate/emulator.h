@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "hwsim/work_trace.h"
+#include "hwsim/trace/work_trace.h"
 #include "pipeline/graph/frame_graph.h"
 #include "pipeline/image/image.h"
 

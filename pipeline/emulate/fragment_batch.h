@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "hwsim/counters.h"
+#include "hwsim/trace/counters.h"
 #include "pipeline/emulate/access_tracker.h"
 #include "pipeline/emulate/gpu_image.h"
 #include "pipeline/raster/sample_pattern.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "hwsim/format.h"
+#include "hwsim/trace/format.h"
 #include "pipeline/depth/depth_planes.h"
 #include "pipeline/graph/pipeline_state.h"
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "hwsim/work_trace.h"
+#include "hwsim/trace/work_trace.h"
 #include "pipeline/emulate/pass_context.h"
 #include "pipeline/graph/frame_graph.h"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "hwsim/work_trace.h"
+#include "hwsim/trace/work_trace.h"
 #include "pipeline/emulate/pass_context.h"
 #include "pipeline/graph/frame_graph.h"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "hwsim/counters.h"
+#include "hwsim/trace/counters.h"
 #include "pipeline/emulate/fragment_batch.h"
 #include "pipeline/graph/frame_graph.h"
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "hwsim/config/gpu_features.h"
-#include "hwsim/format.h"
-#include "hwsim/work_trace.h"
+#include "hwsim/gpu/gpu_features.h"
+#include "hwsim/trace/format.h"
+#include "hwsim/trace/work_trace.h"
 #include "pipeline/graph/pipeline_state.h"
 #include "pipeline/image/image_io.h"
 #include "pipeline/scene/scene.h"

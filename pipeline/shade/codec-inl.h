@@ -2,7 +2,7 @@
 // normalized and float formats. Values beyond a float format's range are clamped to its largest finite value,
 // NaN becomes 0, so that neither reaches an image. Per-target include guard, see shade/lanes-inl.h.
 #include <hwy/highway.h>
-#include "hwsim/format.h"
+#include "hwsim/trace/format.h"
 #include "pipeline/shade/vec-inl.h"
 #if defined(HWSIM_PIPELINE_SHADE_CODEC_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_PIPELINE_SHADE_CODEC_INL_H_

@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
-/// block_hash of hwsim/reuse.h, in every lane.
+/// block_hash of hwsim/trace/reuse.h, in every lane.
 template <class I>
 HWY_INLINE I line_hash(I line) {
   I h = line * I(static_cast<std::int32_t>(0x9e3779b1u));

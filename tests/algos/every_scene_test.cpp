@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "algos/frame_run.h"
-#include "hwsim/config/gpu_config.h"
-#include "hwsim/timing/timing.h"
+#include "hwsim/engines/timing.h"
+#include "hwsim/gpu/gpu_config.h"
 #include "support/places.h"
 
 namespace hwsim::test {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "algos/technique.h"
-#include "hwsim/config/every_feature.h"
+#include "hwsim/gpu/every_feature.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/scene/scene_source.h"
 #include "support/places.h"

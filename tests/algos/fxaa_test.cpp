@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "algos/picture.h"
-#include "hwsim/counters.h"
+#include "hwsim/trace/counters.h"
 
 namespace hwsim::test {
 namespace {

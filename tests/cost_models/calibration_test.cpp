@@ -9,7 +9,7 @@
 #include <set>
 
 #include "cost_models/synthetic.h"
-#include "hwsim/config/gpu_show.h"
+#include "hwsim/gpu/gpu_show.h"
 
 namespace hwsim::cost_models::test {
 namespace {

@@ -1,5 +1,5 @@
 // A server whose requests come in any order.
-#include "hwsim/timing/detailed/calendar.h"
+#include "hwsim/detailed/calendar.h"
 
 #include <gtest/gtest.h>
 

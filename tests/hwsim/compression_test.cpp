@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-#include "hwsim/config/gpu_rates.h"
+#include "hwsim/gpu/gpu_rates.h"
 #include "hwsim/sample_gpu.h"
 #include "hwsim/timing/traffic.h"
 

@@ -1,4 +1,4 @@
-#include "hwsim/counters.h"
+#include "hwsim/trace/counters.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hwsim/work_trace.h"
+#include "hwsim/trace/work_trace.h"
 
 namespace hwsim {
 namespace {

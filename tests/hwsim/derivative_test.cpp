@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hwsim/config/gpu_keys.h"
+#include "hwsim/engines/sensitivity.h"
+#include "hwsim/gpu/gpu_keys.h"
 #include "hwsim/sample_gpu.h"
-#include "hwsim/timing/sensitivity.h"
 
 namespace hwsim::test {
 namespace {

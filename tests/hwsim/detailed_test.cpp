@@ -1,5 +1,5 @@
 // The event-driven engine: each unit against its closed form, and the queue engine where one unit limits.
-#include "hwsim/timing/detailed/detailed.h"
+#include "hwsim/detailed/detailed.h"
 
 #include <gtest/gtest.h>
 

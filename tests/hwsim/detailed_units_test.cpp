@@ -4,8 +4,8 @@
 
 #include <functional>
 
+#include "hwsim/detailed/machine.h"
 #include "hwsim/sample_gpu.h"
-#include "hwsim/timing/detailed/machine.h"
 
 namespace hwsim::test {
 namespace {

@@ -1,5 +1,5 @@
 // GPU files: layers, errors with code, place and hint, text that loads again.
-#include "hwsim/config/gpu_config.h"
+#include "hwsim/gpu/gpu_config.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "hwsim/base/diagnostics.h"
-#include "hwsim/config/gpu_keys.h"
-#include "hwsim/config/gpu_rates.h"
+#include "hwsim/gpu/gpu_keys.h"
+#include "hwsim/gpu/gpu_rates.h"
 #include "hwsim/sample_gpu.h"
 
 namespace hwsim::test {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "hwsim/config/gpu_config.h"
+#include "hwsim/gpu/gpu_config.h"
 #include "hwsim/sample_gpu.h"
 #include "support/places.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "hwsim/config/gpu_keys.h"
+#include "hwsim/gpu/gpu_keys.h"
 #include "hwsim/sample_gpu.h"
 
 namespace hwsim::test {

@@ -1,5 +1,5 @@
 // Reuse distances against a list of recently used blocks, and samples against all blocks.
-#include "hwsim/reuse.h"
+#include "hwsim/trace/reuse.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "hwsim/config/gpu_config.h"
-#include "hwsim/timing/timing.h"
+#include "hwsim/engines/timing.h"
+#include "hwsim/gpu/gpu_config.h"
 
 namespace hwsim::test {
 

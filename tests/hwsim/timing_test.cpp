@@ -1,5 +1,5 @@
 // Closed forms: what a unit alone would need, reached by the engines.
-#include "hwsim/timing/timing.h"
+#include "hwsim/engines/timing.h"
 
 #include <gtest/gtest.h>
 

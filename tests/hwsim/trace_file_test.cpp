@@ -1,6 +1,6 @@
 // A trace that was written reads back to the same numbers, and damage is always noticed: cached traces are
 // input.
-#include "hwsim/trace_file.h"
+#include "hwsim/trace/trace_file.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "hwsim/base/byte_codec.h"
 #include "hwsim/sample_gpu.h"
-#include "hwsim/trace_fields.h"
+#include "hwsim/trace/trace_fields.h"
 
 namespace hwsim::test {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <random>
 
-#include "hwsim/config/gpu_config.h"
-#include "hwsim/timing/timing.h"
+#include "hwsim/engines/timing.h"
+#include "hwsim/gpu/gpu_config.h"
 #include "support/frames.h"
 #include "support/places.h"
 

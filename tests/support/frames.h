@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hwsim/config/every_feature.h"
+#include "hwsim/gpu/every_feature.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/emulate/fragment_batch.h"
 #include "pipeline/shade/mesh_vertex.h"

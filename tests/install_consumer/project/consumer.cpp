@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "algos/technique.h"
-#include "hwsim/timing/timing.h"
+#include "hwsim/engines/timing.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/scene/scene_source.h"
 

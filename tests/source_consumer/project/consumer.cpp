@@ -1,7 +1,7 @@
 // The hardware model alone: a work trace by hand, a GPU, a time.
 #include <cstdio>
 
-#include "hwsim/timing/timing.h"
+#include "hwsim/engines/timing.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;

@@ -1,0 +1,104 @@
+#include "hwsim/engines/sensitivity.h"
+
+#include <algorithm>
+#include <string>
+
+#include "hwsim/config/assign.h"
+#include "hwsim/gpu/gpu_keys.h"
+#include "hwsim/timing/dual.h"
+#include "hwsim/timing/time_pass.h"
+
+namespace hwsim {
+namespace {
+
+constexpr std::size_t kWidth = 8;  // derivatives at a time: two vector registers of doubles with AVX-512
+using Number = Dual<kWidth>;
+
+/// Copies the numbers of a config to duals; the reals from `first` on become the parameters 0, 1, ...
+struct ToDuals {
+  const std::vector<Key>& keys;
+  std::size_t first = 0;
+  std::size_t next = 0, reals = 0;
+
+  void key(const KeyInfo&, Number& value) {
+    const double number = *std::get<double*>(keys[next++].slot);
+    const std::size_t index = reals++;
+    const bool seeded = index >= first && index < first + kWidth;
+    value = seeded ? Number(number, index - first) : Number(number);
+  }
+  void key(const KeyInfo&, int& value) { value = *std::get<int*>(keys[next++].slot); }
+  void key(const KeyInfo&, bool& value) { value = *std::get<bool*>(keys[next++].slot); }
+};
+
+template <class T>
+T frame_time_ns(const WorkTrace& trace, const GpuValues<T>& gpu, Engine engine) {
+  const GpuRates<T> rates = derive_rates<T>(gpu);
+  T sum(0.0);
+  bool first = true;
+  for (const PassWork& pass : trace.passes) {
+    sum += time_pass(pass, rates, engine, pass.barrier_before || first).time_ns;
+    first = false;
+  }
+  return sum;
+}
+
+std::optional<double> doubled_time_ns(const WorkTrace& trace, const GpuValues<double>& gpu, const Key& key,
+                                      Engine engine) {
+  double& slot = *std::get<double*>(key.slot);
+  const double value = slot;
+  std::optional<double> time;
+  slot = 2.0 * value;
+  if (!check_range(key)) time = frame_time_ns(trace, gpu, engine);
+  slot = value;
+  return time;
+}
+
+}  // namespace
+
+std::vector<Sensitivity> sensitivities(const WorkTrace& trace, const GpuConfig& gpu, Engine engine) {
+  GpuValues<double> values = gpu;
+  const std::vector<Key> keys = keys_of(values);
+  std::vector<Key> reals;
+  for (const Key& key : keys)
+    if (std::holds_alternative<double*>(key.slot)) reals.push_back(key);
+  std::vector<Sensitivity> result;
+  for (std::size_t first = 0; first < reals.size(); first += kWidth) {
+    GpuValues<Number> duals;
+    ToDuals to_duals{keys, first};
+    describe(to_duals, duals);
+    const Number time = frame_time_ns(trace, duals, engine);
+    for (std::size_t i = 0; i < kWidth && first + i < reals.size(); ++i) {
+      const Key& key = reals[first + i];
+      Sensitivity s{key.info.name, *std::get<double*>(key.slot), time.d[i], 0.0, {}};
+      s.elasticity = time.v > 0.0 ? s.slope_ns * s.value / time.v : 0.0;
+      s.doubled_ns = doubled_time_ns(trace, values, key, engine);
+      result.push_back(s);
+    }
+  }
+  return result;
+}
+
+std::vector<UnitHeadroom> headroom(const WorkTrace& trace, const GpuConfig& gpu, Engine engine) {
+  const GpuRates<double> rates = derive_rates<double>(gpu);
+  std::vector<UnitHeadroom> result;
+  for (std::size_t u = 0; u < kUnitCount; ++u) {
+    UnitHeadroom entry{static_cast<Unit>(u), 0.0};
+    double busy_ns = 0.0;
+    bool first = true;
+    for (const PassWork& pass : trace.passes) {
+      std::vector<ChunkCost<double>> costs = chunk_costs(pass, rates);
+      for (ChunkCost<double>& cost : costs) {
+        busy_ns += cost.ns[u];
+        cost.ns[u] = 0.0;
+      }
+      entry.time_ns += time_costs(costs, rates, engine, pass.barrier_before || first).time_ns;
+      first = false;
+    }
+    if (busy_ns > 0.0) result.push_back(entry);
+  }
+  std::stable_sort(result.begin(), result.end(),
+                   [](const UnitHeadroom& a, const UnitHeadroom& b) { return a.time_ns < b.time_ns; });
+  return result;
+}
+
+}  // namespace hwsim
