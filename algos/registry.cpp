@@ -1,13 +1,13 @@
 // The techniques, family by family. A family lists its own in a table beside its code; a new family is one
 // line here.
-#include "algos/agaa.h"
-#include "algos/deferred.h"
-#include "algos/forward_techniques.h"
-#include "algos/post_filters.h"
-#include "algos/sbaa.h"
-#include "algos/sss.h"
-#include "algos/technique.h"
-#include "algos/wire_aa.h"
+#include "algos/agaa/agaa.h"
+#include "algos/deferred/deferred.h"
+#include "algos/filters/post_filters.h"
+#include "algos/forward/forward.h"
+#include "algos/sbaa/sbaa.h"
+#include "algos/sss/sss.h"
+#include "algos/techniques.h"
+#include "algos/wire/wire_aa.h"
 
 namespace hwsim::algos {
 namespace {

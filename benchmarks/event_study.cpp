@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "algos/technique.h"
+#include "algos/techniques.h"
 #include "hwsim/gpu/every_feature.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/emulate/fragment_batch.h"

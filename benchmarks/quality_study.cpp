@@ -16,8 +16,8 @@
 #include <string_view>
 #include <vector>
 
-#include "algos/reference_frame.h"
-#include "algos/technique.h"
+#include "algos/base/reference_frame.h"
+#include "algos/techniques.h"
 #include "hwsim/base/diagnostics.h"
 #include "hwsim/gpu/every_feature.h"
 #include "pipeline/base/file_io.h"

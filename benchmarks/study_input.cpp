@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <sstream>
 
-#include "algos/technique.h"
+#include "algos/techniques.h"
 #include "pipeline/scene/scene_source.h"
 
 namespace hwsim::benchmarks {

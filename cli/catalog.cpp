@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "algos/technique.h"
+#include "algos/techniques.h"
 #include "cli/files.h"
 #include "hwsim/base/csv.h"
 #include "hwsim/gpu/gpu_config.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "algos/technique.h"
+#include "algos/techniques.h"
 #include "cli/catalog.h"
 #include "cli/commands.h"
 #include "cli/files.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "algos/technique.h"
+#include "algos/techniques.h"
 #include "cli/options.h"
 #include "hwsim/config/toml_value.h"
 #include "hwsim/engines/timing.h"

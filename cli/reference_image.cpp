@@ -3,7 +3,7 @@
 #include <chrono>
 #include <filesystem>
 
-#include "algos/reference_frame.h"
+#include "algos/base/reference_frame.h"
 #include "cli/cache.h"
 #include "cli/files.h"
 #include "cli/simulate.h"

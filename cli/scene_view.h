@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "algos/technique.h"
+#include "algos/techniques.h"
 #include "cli/plan.h"
 #include "cli/terminal.h"
 #include "pipeline/image/image_io.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "algos/agaa/layout.h"
 #include "algos/agaa_frames.h"
-#include "algos/agaa_layout.h"
 
 namespace hwsim::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "algos/technique.h"
+#include "algos/techniques.h"
 #include "hwsim/gpu/every_feature.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/scene/scene_source.h"

@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-#include "algos/gbuffer_layouts.h"
+#include "algos/base/shaders/gbuffer_layouts.h"
 #include "algos/sbaa_frames.h"
 #include "pipeline/image/metrics.h"
 

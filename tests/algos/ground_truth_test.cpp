@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "algos/frame_parts.h"
+#include "algos/base/frame_parts.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/image/metrics.h"
 #include "pipeline/reference/reference_shading.h"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "algos/technique.h"
+#include "algos/techniques.h"
 #include "pipeline/emulate/emulator.h"
 
 namespace hwsim::test {

@@ -1,6 +1,6 @@
 // The ray-traced reference and the emulated pipeline draw the same scene by the same shader: what is left
 // between them is aliasing, so more samples bring the pipeline closer.
-#include "algos/reference_frame.h"
+#include "algos/base/reference_frame.h"
 
 #include <gtest/gtest.h>
 

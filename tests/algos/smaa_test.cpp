@@ -4,7 +4,7 @@
 #include <tuple>
 #include "algos/picture.h"
 
-#include "algos/smaa_tables.h"
+#include "algos/filters/smaa_tables.h"
 
 namespace hwsim::test {
 namespace {

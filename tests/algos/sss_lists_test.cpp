@@ -5,12 +5,12 @@
 #include <cmath>
 #include <random>
 
-#include "algos/shaders/sss.h"
+#include "algos/sss/shaders/programs.h"
 #include "algos/sss_scenes.h"
 #include "hwsim/base/diagnostics.h"
 
 // One vector target is enough here: without foreach_target.
-#include "algos/shaders/sss_pixel-inl.h"
+#include "algos/sss/shaders/pixel-inl.h"
 #include "pipeline/shade/scalar_lane-inl.h"
 
 namespace hwsim::test {

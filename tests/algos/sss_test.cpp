@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algos/shaders/sss.h"
-#include "algos/sss_classify.h"
+#include "algos/sss/classify.h"
+#include "algos/sss/shaders/programs.h"
 #include "algos/sss_scenes.h"
 
 // One vector target is enough here: without foreach_target.

@@ -1,5 +1,5 @@
 // The grammar of techniques: parts, their order, their parameters, and what cannot be combined.
-#include "algos/technique.h"
+#include "algos/techniques.h"
 
 #include <gtest/gtest.h>
 

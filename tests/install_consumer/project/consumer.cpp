@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "algos/technique.h"
+#include "algos/techniques.h"
 #include "hwsim/engines/timing.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/scene/scene_source.h"

@@ -1,0 +1,340 @@
+#include "algos/base/frame_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "algos/wire/draws.h"
+#include "pipeline/emulate/material_views.h"
+#include "pipeline/shade/mesh_vertex.h"
+
+namespace hwsim::algos {
+namespace {
+using namespace pipeline;
+
+/// Opaque wires are drawn apart where the request says so.
+bool is_wire(const FrameRequest& request, const Mesh& mesh, const Material& material) {
+  return request.wires && !mesh.radius.empty() && material.alpha_mode == AlphaMode::opaque;
+}
+
+using ByDepth = std::vector<std::pair<float, DrawCall>>;
+
+std::vector<DrawCall> back_to_front(ByDepth calls) {
+  std::stable_sort(calls.begin(), calls.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<DrawCall> sorted;
+  for (auto& [z, call] : calls) sorted.push_back(std::move(call));
+  return sorted;
+}
+
+DrawLists list_draws(const FrameRequest& request, const Camera& camera) {
+  const Scene& scene = *request.scene;
+  DrawLists lists;
+  ByDepth blended, wires;
+  for (int i = 0; i < static_cast<int>(scene.instances.size()); ++i) {
+    const Instance& instance = scene.instances[static_cast<std::size_t>(i)];
+    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+    const glm::vec3 center = 0.5f * (mesh.bounds_min + mesh.bounds_max);
+    const float view_z = (camera.view_from_world * instance.world_from_local * glm::vec4(center, 1.0f)).z;
+    for (int p = 0; p < static_cast<int>(mesh.parts.size()); ++p) {
+      const Mesh::Part& part = mesh.parts[static_cast<std::size_t>(p)];
+      const Material& material = scene.materials[static_cast<std::size_t>(part.material)];
+      if (is_wire(request, mesh, material)) {
+        wires.push_back({view_z, sorted_wires(scene, camera, {i, p})});
+        continue;
+      }
+      switch (material.alpha_mode) {
+        case AlphaMode::opaque:
+          lists.opaque.push_back({i, p});
+          break;
+        case AlphaMode::mask:
+          lists.mask.push_back({i, p});
+          break;
+        case AlphaMode::blend:
+          blended.push_back({view_z, {i, p}});
+          break;
+      }
+    }
+  }
+  lists.blend = back_to_front(std::move(blended));
+  lists.wires = back_to_front(std::move(wires));
+  return lists;
+}
+
+// PCG (O'Neill 2014): the same lights on every machine.
+class Pcg {
+ public:
+  float next() {
+    state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
+    const auto shifted = static_cast<std::uint32_t>(((state_ >> 18u) ^ state_) >> 27u);
+    const auto rotation = static_cast<std::uint32_t>(state_ >> 59u);
+    const std::uint32_t bits = shifted >> rotation | shifted << ((32 - rotation) & 31);
+    return static_cast<float>(bits >> 8) * 0x1p-24f;
+  }
+
+ private:
+  std::uint64_t state_ = 0x853c49e6748fea9bull;
+};
+
+void add_point_lights(const FrameRequest& request, int count, LightingUniforms& lighting) {
+  if (count <= 0) return;
+  const SceneStats s = stats(*request.scene);
+  const glm::vec3 extent = s.bounds_max - s.bounds_min;
+  const float range = static_cast<float>(request.light_range) * glm::length(extent);
+  Pcg random;
+  if (lighting.point_count == 0) lighting.points.clear();
+  for (int i = 0; i < count; ++i) {
+    PointLight light;
+    for (int axis = 0; axis < 3; ++axis)
+      light.position[axis] = s.bounds_min[axis] + extent[axis] * random.next();
+    // Strength such that a light gives about 1/2 at a third of its range.
+    const float strength = 0.5f * range * range / 9.0f;
+    for (int axis = 0; axis < 3; ++axis) light.color[axis] = strength * (0.3f + 0.7f * random.next());
+    light.inv_range2 = 1.0f / (range * range);
+    lighting.points.push_back(light);
+  }
+  lighting.point_count = static_cast<int>(lighting.points.size());
+}
+
+/// The first of a frame's lights: directional ones, then points.
+void keep_lights(int count, LightingUniforms& lighting) {
+  lighting.directional_count = std::min(lighting.directional_count, count);
+  lighting.point_count = std::min(lighting.point_count, count - lighting.directional_count);
+  // The vectors keep at least one element (LightingUniforms).
+  lighting.directional.resize(static_cast<std::size_t>(std::max(1, lighting.directional_count)));
+  lighting.points.resize(static_cast<std::size_t>(std::max(1, lighting.point_count)));
+}
+
+/// An orthographic view along the light that holds the whole scene.
+glm::mat4 shadow_clip_from_world(const Scene& scene, const glm::vec3& to_light) {
+  const SceneStats s = stats(scene);
+  const glm::vec3 up = std::fabs(to_light.y) > 0.99f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
+  const glm::mat4 view = glm::lookAt(to_light, glm::vec3(0.0f), up);
+  glm::vec3 low(1e30f), high(-1e30f);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 p((corner & 1) != 0 ? s.bounds_max.x : s.bounds_min.x,
+                      (corner & 2) != 0 ? s.bounds_max.y : s.bounds_min.y,
+                      (corner & 4) != 0 ? s.bounds_max.z : s.bounds_min.z);
+    const glm::vec3 v(view * glm::vec4(p, 1.0f));
+    low = glm::min(low, v);
+    high = glm::max(high, v);
+  }
+  const glm::vec3 margin = 0.01f * (high - low) + glm::vec3(1e-3f);
+  low -= margin;
+  high += margin;
+  return glm::ortho(low.x, high.x, low.y, high.y, -high.z, -low.z) * view;
+}
+
+DrawBatch depth_batch(const glm::mat4& clip_from_world, const std::vector<DrawCall>& draws, bool alpha_test) {
+  DrawBatch batch;
+  batch.state.depth = {true, true, Compare::less};
+  batch.state.raster.cull =
+      CullMode::none;  // both sides of a surface cast shadows, as for the reference's rays
+  batch.vertex = alpha_test ? &mesh_uv_program() : &mesh_position_program();
+  batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{clip_from_world});
+  if (alpha_test) {
+    batch.fragment = &alpha_test_program();
+    batch.fragment_uniforms = std::make_shared<AlphaTestUniforms>();
+  }
+  batch.draws = draws;
+  return batch;
+}
+
+void add_shadow_map(FrameGraph& graph, FrameParts& parts) {
+  const FrameRequest& request = *parts.request;
+  LightingUniforms& lighting = parts.lighting;
+  const auto caster = std::find_if(lighting.directional.begin(), lighting.directional.end(),
+                                   [](const DirectionalLight& l) { return l.shadowed; });
+  if (!request.shadows || caster == lighting.directional.end() || request.scene->instances.empty()) return;
+  const int size = request.shadow_map_px;
+  const glm::mat4 clip = shadow_clip_from_world(*request.scene, caster->to_light);
+  parts.shadow_map = graph.add_image({"shadow_map", Format::d32_float, size, size, 1});
+  graph.add_clear("shadow_clear", {parts.shadow_map});
+  Pass& pass = graph.add_pass("shadow", PassKind::draw);
+  pass.width = pass.height = size;
+  pass.depth = parts.shadow_map;
+  pass.batches.push_back(depth_batch(clip, parts.draws.opaque, false));
+  if (!parts.draws.wires.empty()) pass.batches.push_back(depth_batch(clip, parts.draws.wires, false));
+  if (!parts.draws.mask.empty()) pass.batches.push_back(depth_batch(clip, parts.draws.mask, true));
+  const float half = 0.5f * static_cast<float>(size);
+  const glm::mat4 texels = glm::translate(glm::mat4(1.0f), glm::vec3(half, half, 0.0f)) *
+                           glm::scale(glm::mat4(1.0f), glm::vec3(half, -half, 1.0f));
+  lighting.shadow_from_world = texels * clip;
+  lighting.shadow_slot = 0;
+  // A texel's footprint in meters: moving the receiver by 1.5 of them keeps a slope of 45 degrees from
+  // shadowing itself.
+  const glm::vec3 row(clip[0][0], clip[1][0], clip[2][0]);
+  lighting.shadow_offset_m = 1.5f / (glm::length(row) * half);
+  lighting.shadow_bias = 1e-4f;
+}
+
+DrawBatch surface_batch(const FrameParts& parts, const ForwardTarget& target,
+                        const std::vector<DrawCall>& draws, bool alpha_test) {
+  DrawBatch batch;
+  batch.state = opaque_state(target);
+  batch.vertex = parts.full_varyings ? &mesh_full_program() : &mesh_surface_program();
+  batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(
+      MeshVertexUniforms{jittered(parts.clip_from_world, target.jitter_px, target.width, target.height)});
+  batch.fragment = &forward_program(parts.full_varyings, alpha_test);
+  batch.fragment_uniforms =
+      std::make_shared<ForwardUniforms>(ForwardUniforms{parts.lighting, parts.full_varyings});
+  batch.draws = draws;
+  return batch;
+}
+
+Pass& add_target_pass(FrameGraph& graph, const FrameParts& parts, const std::string& name,
+                      const ForwardTarget& target) {
+  Pass& pass = graph.add_pass(name, PassKind::draw);
+  pass.width = target.width;
+  pass.height = target.height;
+  pass.samples = target.samples;
+  pass.coverage_samples = target.coverage_samples;
+  pass.drop_orphans = target.drop_orphans;
+  pass.viewports = target.layers.viewports;
+  pass.color = {target.color};
+  pass.depth = target.depth;
+  if (parts.shadow_map) pass.sampled = {parts.shadow_map};
+  return pass;
+}
+
+}  // namespace
+
+glm::mat4 jittered(const glm::mat4& clip_from_world, glm::vec2 jitter_px, int width, int height) {
+  // Clip x and y move by a multiple of w: a sample further right sees what lies further right, so geometry
+  // moves left.
+  glm::mat4 result = clip_from_world;
+  for (int column = 0; column < 4; ++column) {
+    result[column][0] -= 2.0f * jitter_px.x / static_cast<float>(width) * clip_from_world[column][3];
+    result[column][1] += 2.0f * jitter_px.y / static_cast<float>(height) * clip_from_world[column][3];
+  }
+  return result;
+}
+
+PipelineState opaque_state(const ForwardTarget& target) {
+  PipelineState state;
+  state.depth = {true, true, Compare::less};
+  state.raster.cull = CullMode::back;
+  state.raster.centroid = target.centroid;
+  state.raster.sample_rate = target.sample_rate;
+  state.raster.sample_positions = target.layers.positions;
+  return state;
+}
+
+LightingUniforms frame_lighting(const FrameRequest& request) {
+  const Scene& scene = *request.scene;
+  LightingUniforms lighting =
+      make_lighting(scene, scene.cameras.at(static_cast<std::size_t>(request.camera)));
+  switch (request.lights) {
+    case LightProfile::scene:
+      add_point_lights(request, request.point_lights, lighting);
+      break;
+    case LightProfile::simple:
+      keep_lights(1, lighting);
+      break;
+    case LightProfile::complex:
+      add_point_lights(request, kComplexLights - lighting.directional_count - lighting.point_count, lighting);
+      keep_lights(kComplexLights, lighting);
+      break;
+  }
+  return lighting;
+}
+
+FrameParts prepare_frame(FrameGraph& graph, const FrameRequest& request) {
+  FrameParts parts;
+  parts.request = &request;
+  const Scene& scene = *request.scene;
+  parts.camera = scene.cameras.at(static_cast<std::size_t>(request.camera));
+  const float aspect = static_cast<float>(request.width_px) / static_cast<float>(request.height_px);
+  parts.clip_from_world = clip_from_view(parts.camera, aspect) * parts.camera.view_from_world;
+  parts.draws = list_draws(request, parts.camera);
+  parts.full_varyings = needs_full_varyings(scene);
+  parts.lighting = frame_lighting(request);
+  add_shadow_map(graph, parts);
+  return parts;
+}
+
+ForwardTarget make_forward_target(FrameGraph& graph, const std::string& name, int width, int height,
+                                  int samples, Format color, Format depth, const MulticastPattern& layers) {
+  ForwardTarget target;
+  target.width = width;
+  target.height = height;
+  const int layer_count = std::max(1, static_cast<int>(layers.viewports.size()));
+  target.samples = samples / layer_count;
+  target.layers = layers;
+  target.color = graph.add_image({name + "_color", color, width, height, target.samples, layer_count});
+  target.depth = graph.add_image({name + "_depth", depth, width, height, target.samples, layer_count});
+  return target;
+}
+
+MulticastPattern multicast_layers(const FrameRequest& request, int samples, int emulate) {
+  enum Emulate { automatic, on, off };
+  const bool native = emulate == off || (emulate == automatic && samples <= request.features.native_msaa_max);
+  return native || samples <= 8 ? MulticastPattern{} : multicast_pattern(samples);
+}
+
+void add_forward(FrameGraph& graph, const FrameParts& parts, const std::string& prefix,
+                 const ForwardTarget& target) {
+  graph.add_clear(prefix + "clear", {target.color, target.depth},
+                  glm::vec4(parts.request->scene->background, 1.0f));
+  Pass& pass = add_target_pass(graph, parts, prefix + "forward", target);
+  pass.batches.push_back(surface_batch(parts, target, parts.draws.opaque, false));
+  if (!parts.draws.mask.empty()) pass.batches.push_back(surface_batch(parts, target, parts.draws.mask, true));
+  add_blended(graph, parts, prefix + "blended", target);
+}
+
+void add_blended(FrameGraph& graph, const FrameParts& parts, const std::string& name,
+                 const ForwardTarget& target) {
+  add_wires(graph, parts,
+            name.ends_with("blended") ? name.substr(0, name.size() - 7) + "wires" : name + "_wires", target);
+  if (parts.draws.blend.empty()) return;
+  Pass& pass = add_target_pass(graph, parts, name, target);
+  DrawBatch batch = surface_batch(parts, target, parts.draws.blend, false);
+  batch.state.depth.write = false;
+  BlendState over;
+  over.enabled = true;
+  over.src_color = BlendFactor::src_alpha;
+  over.dst_color = BlendFactor::one_minus_src_alpha;
+  over.dst_alpha = BlendFactor::one_minus_src_alpha;
+  batch.state.blend = {over};
+  pass.batches.push_back(std::move(batch));
+}
+
+void add_blended_on_output(FrameGraph& graph, const FrameParts& parts, ImageId output) {
+  if (parts.draws.blend.empty()) return;
+  ForwardTarget target;
+  target.width = graph.width();
+  target.height = graph.height();
+  target.color = output;
+  target.depth = graph.add_image({"blended_depth", Format::d32_float, target.width, target.height, 1});
+  graph.add_clear("blended_clear", {target.depth});
+  Pass& pass = graph.add_pass("blended_depth", PassKind::draw);
+  pass.depth = target.depth;
+  const auto add = [&](const std::vector<DrawCall>& draws, bool alpha_test) {
+    if (draws.empty()) return;
+    pass.batches.push_back(depth_batch(parts.clip_from_world, draws, alpha_test));
+    pass.batches.back().state.raster.cull = CullMode::back;
+  };
+  add(parts.draws.opaque, false);
+  add(parts.draws.mask, true);
+  add_blended(graph, parts, "blended", target);
+}
+
+Pass& add_full_screen(FrameGraph& graph, const std::string& name, std::vector<ImageId> sampled,
+                      ImageId target, const FragmentProgram& program, std::shared_ptr<const void> uniforms) {
+  Pass& pass = graph.add_pass(name, PassKind::full_screen);
+  pass.width = graph.image(target).width;
+  pass.height = graph.image(target).height;
+  pass.sampled = std::move(sampled);
+  pass.color = {target};
+  pass.fragment = &program;
+  pass.uniforms = std::move(uniforms);
+  return pass;
+}
+
+ImageId add_output(FrameGraph& graph) {
+  const ImageId output = graph.add_image({"output", Format::rgba8_srgb, graph.width(), graph.height(), 1});
+  graph.set_output(output);
+  return output;
+}
+
+}  // namespace hwsim::algos

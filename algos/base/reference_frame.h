@@ -1,0 +1,22 @@
+#pragma once
+// The ground truth of a frame: rays instead of rasterization and of a shadow map, the same materials and
+// lights.
+#include <functional>
+
+#include "algos/base/technique.h"
+#include "pipeline/image/image.h"
+
+namespace hwsim::algos {
+
+struct ReferenceFrameOptions {
+  int samples = 64;  ///< a pixel
+  int jobs = 1;
+  std::function<void(double share)> progress{};
+};
+
+/// Raised when the same request gives another image: part of the key of cached references.
+inline constexpr int kReferenceVersion = 2;
+
+pipeline::Image render_reference_frame(const FrameRequest& request, const ReferenceFrameOptions& options);
+
+}  // namespace hwsim::algos

@@ -1,0 +1,62 @@
+// CMAA, first version: locally dominant edges, simple shapes and long Z shapes (techniques 7.4). Works in
+// place.
+#include "algos/filters/shaders/cmaa.h"
+#include "algos/base/frame_parts.h"
+#include "algos/filters/post_filters.h"
+
+namespace hwsim::algos {
+namespace {
+using namespace pipeline;
+
+/// A pass over quads of the image: as many invocations as quads.
+Pass& add_quads(FrameGraph& graph, const char* name, ImageId mask, const FragmentProgram& program,
+                std::shared_ptr<const CmaaUniforms> uniforms) {
+  Pass& pass = graph.add_pass(name, PassKind::full_screen);
+  pass.width = graph.image(mask).width;
+  pass.height = graph.image(mask).height;
+  pass.fragment = &program;
+  pass.uniforms = std::move(uniforms);
+  pass.depth = mask;
+  // Depth 0 is less than the 1 of quads that are still of interest.
+  pass.state.depth = {true, program.writes_depth, Compare::less};
+  pass.state.force_early_z = true;
+  pass.depth_read_only = !program.writes_depth;
+  return pass;
+}
+
+}  // namespace
+
+ImageId add_cmaa(FrameGraph& graph, ImageId input, const Parameters& parameters) {
+  CmaaUniforms u;
+  u.threshold = static_cast<float>(parameters.find("threshold")->second);
+  u.average_quirk = parameters.find("cmaa_avg_quirk")->second != 0;
+  const auto uniforms = std::make_shared<const CmaaUniforms>(u);
+  const int width = graph.width(), height = graph.height();
+  const int quads_x = (width + 1) / 2, quads_y = (height + 1) / 2;
+  const ImageId strengths = graph.add_image({"cmaa_strengths", Format::rgba8_uint, quads_x, quads_y, 1});
+  const ImageId mask = graph.add_image({"cmaa_mask", Format::d16_unorm, quads_x, quads_y, 1});
+  const ImageId dominant = graph.add_image({"cmaa_dominant", Format::r8_uint, width, height, 1});
+  const ImageId edges = graph.add_image({"cmaa_edges", Format::r8_uint, width, height, 1});
+  const ImageId work = graph.add_image({"cmaa_work", Format::rgba8_unorm, width, height, 1});
+  graph.add_clear("cmaa_clear", {dominant, edges});
+
+  Pass& find = add_quads(graph, "cmaa_edges", mask, cmaa_edge_program(), uniforms);
+  find.state.depth.compare = Compare::always;
+  find.color = {strengths};
+  find.sampled = {input};
+  find.views = {Format::rgba8_unorm};
+  find.targets = {work};
+  Pass& prune = add_quads(graph, "cmaa_prune", mask, cmaa_prune_program(), uniforms);
+  prune.sampled = {strengths};
+  prune.targets = {dominant};
+  Pass& combine = add_quads(graph, "cmaa_combine", mask, cmaa_combine_program(), uniforms);
+  combine.sampled = {dominant};
+  combine.targets = {edges};
+  Pass& blend = add_quads(graph, "cmaa_blend", mask, cmaa_blend_program(), uniforms);
+  blend.sampled = {edges, work};
+  blend.targets = {input, input};  // lines over simple shapes
+  blend.target_views = {Format::rgba8_unorm, Format::rgba8_unorm};
+  return input;
+}
+
+}  // namespace hwsim::algos

@@ -1,0 +1,68 @@
+#pragma once
+// Programs of surface based anti-aliasing (techniques 3): visibility with primitive numbers, the analysis
+// that chooses surfaces, their G-buffer records, and the shading of these.
+#include <cmath>
+
+#include "algos/base/shaders/deferred.h"
+
+namespace hwsim::algos {
+
+/// What the visibility pass keeps beside depth.
+enum class SbaaSample : std::uint8_t {
+  id,             ///< TOP
+  id_and_normal,  ///< MERGE: a normal of four bytes
+  packed          ///< MERGE: number and normal in one texel of four bytes
+};
+
+/// Numbers are truncated to `id_mask`; the bit above it says that something was drawn.
+struct SbaaIdUniforms {
+  int id_mask = 127;
+};
+/// Colors: the number; then the normal. Varyings: none or the texture coordinates for SbaaSample::id,
+/// the normal and these otherwise.
+const pipeline::FragmentProgram& sbaa_id_program(SbaaSample sample, bool alpha_test);
+
+/// The n surfaces of a pixel: an image of two integer channels, the truncated number and the sample count, a
+/// slot below the other. The count of slot 0 holds the pixel's background samples too, times
+/// `background_unit`. Records lie in a buffer, [pixel][slot].
+struct SbaaSurfaces {
+  int width = 1, height = 1;
+  int slots = 1;
+  int background_unit = 16;
+  int record_words = 8;
+};
+
+struct SbaaAnalysisUniforms {
+  SbaaSurfaces surfaces;
+  int samples = 1;
+  int id_mask = 127;
+  float cos_alpha = 0.980785f;  ///< MERGE: samples with normals closer than this may be one surface
+  float end_region = 0.25f;     ///< MERGE: share of the depth range at each end
+  bool linear_depth = false;    ///< MERGE: distances instead of stored depth
+  glm::mat4 view_from_clip{1.0f};
+};
+/// Image slots: number (with the normal if packed), normal, depth. Target: the surfaces. Buffer 0: the first
+/// word of each chosen surface's record is cleared.
+const pipeline::ComputeProgram& sbaa_analysis_program(SbaaSample sample, int id_bits);
+
+inline constexpr int kLeastRecordBytes = 12, kFullRecordBytes = 32, kLargestRecordBytes = 64;
+
+struct SbaaGBufferUniforms {
+  SbaaSurfaces surfaces;
+  int id_mask = 127;
+  bool full_varyings = false;
+  glm::mat4 clip_from_world{1.0f}, view_from_world{1.0f};
+};
+/// Image slot 0: the surfaces. Writes the records of fragments that were chosen to buffer 0: the attachments
+/// of GBufferEncoding::record; below 32 bytes depth instead of position; below 16 no emission.
+const pipeline::FragmentProgram& sbaa_gbuffer_program(bool full_record, bool full_varyings, bool alpha_test);
+
+struct SbaaShadeUniforms {
+  DeferredUniforms frame;
+  SbaaSurfaces surfaces;
+  bool weigh_background = true;
+};
+/// Image slot 0: the surfaces. Buffer 0: the records. Color: the mean of the surfaces by their samples.
+const pipeline::FragmentProgram& sbaa_shade_program(bool full_record);
+
+}  // namespace hwsim::algos

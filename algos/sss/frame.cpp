@@ -1,0 +1,193 @@
+#include "algos/sss/frame.h"
+
+#include <algorithm>
+#include <array>
+
+#include "algos/sss/classify.h"
+#include "algos/wire/draws.h"
+
+namespace hwsim::algos {
+using namespace pipeline;
+
+namespace {
+
+SssVertex vertex_of(const FrameParts& parts, const Material& material, const Mesh& mesh) {
+  const std::array<const TextureRef*, 5> textures = {
+      &material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
+      &material.emissive_texture, &material.occlusion_texture};
+  const auto any = [&](auto&& what) {
+    return std::any_of(textures.begin(), textures.end(),
+                       [&](const TextureRef* t) { return t->texture >= 0 && what(*t); });
+  };
+  const bool full = material.normal_texture.texture >= 0 || !mesh.colors.empty() ||
+                    any([](const TextureRef& t) { return t.uv_set == 1; });
+  if (parts.full_varyings && full) return SssVertex::full;
+  if (any([](const TextureRef&) { return true; })) return SssVertex::textured;
+  return SssVertex::plain;
+}
+
+/// Closed opaque solids are what the technique presumes: alpha-tested and blended materials stay out.
+std::vector<CriticalDraw> list_critical(const FrameParts& parts, double theta_c_deg) {
+  const Scene& scene = *parts.request->scene;
+  std::vector<std::vector<std::uint32_t>> triangles =
+      find_critical(scene, parts.draws.opaque, theta_c_deg * 3.14159265358979323846 / 180.0);
+  std::vector<CriticalDraw> critical;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (triangles[i].empty()) continue;
+    CriticalDraw draw;
+    draw.call = parts.draws.opaque[i];
+    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(
+        scene.instances[static_cast<std::size_t>(draw.call.instance)].mesh)];
+    const Mesh::Part& part = mesh.parts[static_cast<std::size_t>(draw.call.part)];
+    draw.vertex = vertex_of(parts, scene.materials[static_cast<std::size_t>(part.material)], mesh);
+    draw.call.list = make_index_list(std::move(triangles[i]));
+    critical.push_back(std::move(draw));
+  }
+  return critical;
+}
+
+/// Where the multisampled frame's samples lie.
+void set_samples(SssUniforms& u) {
+  const std::span<const SamplePosition> samples = standard_sample_positions(kSssBaseSamples);
+  for (int k = 0; k < kSssBaseSamples; ++k) {
+    const SamplePosition& p = samples[static_cast<std::size_t>(k)];
+    u.samples_x |= (p.x + 8) << (4 * k);
+    u.samples_y |= (p.y + 8) << (4 * k);
+  }
+  const auto nearest = [&](int x, int y) {
+    const auto distance2 = [&](const SamplePosition& p) {
+      const int dx = p.x + 8 - x, dy = p.y + 8 - y;
+      return dx * dx + dy * dy;
+    };
+    return static_cast<int>(std::min_element(samples.begin(), samples.end(),
+                                             [&](const SamplePosition& a, const SamplePosition& b) {
+                                               return distance2(a) < distance2(b);
+                                             }) -
+                            samples.begin());
+  };
+  for (int cell = 0; cell < 16; ++cell)
+    u.nearest_samples[static_cast<std::size_t>(cell / 8)] |= nearest(4 * (cell % 4) + 2, 4 * (cell / 4) + 2)
+                                                             << (4 * (cell % 8));
+  for (int k = 0; k < 8; ++k) {
+    const int i = k < 4 ? k : k + 1, x = i % 3 - 1, y = i / 3 - 1;
+    u.neighbor_samples[static_cast<std::size_t>(k)] = nearest(8 - 16 * x, 8 - 16 * y);
+  }
+}
+
+SssUniforms make_uniforms(const FrameGraph& graph, const FrameParts& parts, const Parameters& p) {
+  SssUniforms u;
+  u.lighting = parts.lighting;
+  if (parts.shadow_map) u.lighting.shadow_slot = kSssShadowSlot;
+  u.clip_from_world = parts.clip_from_world;
+  u.width_px = graph.width();
+  u.height_px = graph.height();
+  u.mode = value(p, "mode") == 0 ? SssMode::both : SssMode::either;
+  u.triangle_px = real(p, "tri_px");
+  u.highlight_px = real(p, "hl_px");
+  u.early_exit = value(p, "early_exit") != 0;
+  u.threshold = real(p, "tau");
+  const bool phong = parts.lighting.model == ShadingModel::phong;
+  u.exponent_scale = phong ? 1.0f : 0.25f;  // half vectors turn half as fast as reflections
+  u.normalized = !phong;
+  u.samples_per_px = real(p, "rho");
+  u.samples_min = real(p, "k_min");
+  u.samples_max = std::max(real(p, "k_max"), u.samples_min);
+  u.border_share = real(p, "border_frac");
+  u.depth_bias = real(p, "pt_bias_units") * 0x1p-24f;
+  u.depth_slope = real(p, "pt_bias_slope");
+  set_samples(u);
+  return u;
+}
+
+/// The paper presumes opaque solids. What is blended over them writes no depth, so samples behind it would
+/// replace it: its depth is drawn apart, and they keep away.
+void add_overlay_depth(FrameGraph& graph, const SssFrame& f) {
+  const DrawBatch wires = wire_depth_batch(f.parts, f.base);
+  if (wires.draws.empty() && f.parts.draws.blend.empty()) return;
+  Pass& pass = graph.add_pass("overlay_depth", PassKind::draw);
+  pass.samples = f.base.samples;
+  pass.depth = f.base.depth;
+  if (!wires.draws.empty()) pass.batches.push_back(wires);
+  if (f.parts.draws.blend.empty()) return;
+  DrawBatch blended;
+  blended.state = opaque_state(f.base);
+  blended.vertex = &mesh_position_program();
+  blended.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{f.parts.clip_from_world});
+  blended.draws = f.parts.draws.blend;
+  pass.batches.push_back(std::move(blended));
+}
+
+/// The multisampled frame's samples on triangles that are sampled: drawn once more, where the depth is
+/// theirs.
+void add_marks(FrameGraph& graph, SssFrame& f) {
+  f.marks = graph.add_image(
+      {"marks", Format::r8_unorm, graph.width(), graph.height(), graph.image(f.base.depth).samples});
+  graph.add_clear("marks_clear", {f.marks});
+  Pass& pass = graph.add_pass("marks", PassKind::draw);
+  pass.samples = f.base.samples;
+  pass.color = {f.marks};
+  pass.depth = f.base.depth;
+  pass.depth_read_only = true;
+  auto uniforms = std::make_shared<SssUniforms>(f.uniforms);
+  uniforms->counted = false;
+  add_sss_batches(pass, f, [&](DrawBatch& batch, SssVertex vertex) {
+    batch.geometry = &sss_marks_program(vertex);
+    batch.geometry_uniforms = uniforms;
+    batch.fragment = &sss_mark_program();
+    batch.fragment_uniforms = batch.geometry_uniforms;
+    batch.state.depth = {true, false, Compare::equal};
+  });
+}
+
+}  // namespace
+
+SssFrame start_sss_frame(FrameGraph& graph, const FrameRequest& request, const Parameters& p,
+                         bool needs_marks) {
+  SssFrame f;
+  f.parts = prepare_frame(graph, request);
+  if (value(p, "shading") != 0) f.parts.lighting.model = ShadingModel::phong;
+  f.base = make_forward_target(graph, "multisampled", graph.width(), graph.height(), kSssBaseSamples);
+  f.base.centroid = true;
+  add_forward(graph, f.parts, "", f.base);
+  f.critical = list_critical(f.parts, value(p, "theta_c"));
+  if (f.critical.empty()) {
+    graph.add_resolve("resolve", f.base.color, add_output(graph));
+    return f;
+  }
+  add_overlay_depth(graph, f);
+  f.uniforms = make_uniforms(graph, f.parts, p);
+  f.over_others = value(p, "rest") != 0;
+  if (f.over_others || needs_marks) add_marks(graph, f);
+  if (f.over_others) {
+    f.below = f.base.color;
+    return f;
+  }
+  f.below = graph.add_image({"resolved", Format::rgba8_srgb, graph.width(), graph.height(), 1});
+  graph.add_resolve("resolve", f.base.color, f.below);
+  return f;
+}
+
+void add_sss_composite(FrameGraph& graph, const SssFrame& f, const FragmentProgram& program,
+                       std::vector<ImageId> sums, std::vector<BufferId> buffers) {
+  Pass& pass = graph.add_pass("composite", PassKind::full_screen);
+  SssUniforms uniforms = f.uniforms;
+  pass.sampled = {f.below};
+  pass.sampled.insert(pass.sampled.end(), sums.begin(), sums.end());
+  uniforms.mark_slot = -1;
+  if (f.over_others) {
+    uniforms.mark_slot = static_cast<int>(pass.sampled.size());
+    pass.sampled.push_back(f.marks);
+  }
+  pass.storage = std::move(buffers);
+  pass.fragment = &program;
+  pass.uniforms = std::make_shared<SssUniforms>(std::move(uniforms));
+  pass.color = {add_output(graph)};
+}
+
+std::vector<ImageId> sss_slots(const SssFrame& f) {
+  std::vector<ImageId> images = {f.base.depth};
+  if (f.parts.shadow_map) images.push_back(f.parts.shadow_map);
+  return images;
+}
+
+}  // namespace hwsim::algos

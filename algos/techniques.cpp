@@ -1,0 +1,231 @@
+// From "wire_aa+msaa4x+fxaa:preset=39" to a technique and back.
+#include "algos/techniques.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace hwsim::algos {
+namespace {
+
+using Problems = std::vector<Diagnostic>;
+
+void add(Problems& problems, std::string code, std::string message, std::string hint, std::string help) {
+  problems.push_back(
+      {Severity::error, std::move(code), std::move(message), {}, std::move(hint), {}, std::move(help)});
+}
+
+std::string quoted(std::string_view text) { return "`" + std::string(text) + "`"; }
+
+std::string did_you_mean(std::string_view name, const std::vector<std::string>& names) {
+  const std::string nearest = nearest_name(name, names);
+  return nearest.empty() ? "" : "did you mean " + quoted(nearest) + "?";
+}
+
+const TechniqueInfo* find_technique(std::string_view id) {
+  const auto all = techniques();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const TechniqueInfo& t) { return t.id == id; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+void add_unknown(Problems& problems, std::string_view id, std::string_view text) {
+  std::vector<std::string> ids;
+  for (const TechniqueInfo& t : techniques()) ids.emplace_back(t.id);
+  const std::string help = "`hwsim list techniques` lists them";
+  if (id.empty())
+    add(problems, "T001", quoted(text) + " has a part without a name", "", help);
+  else
+    add(problems, "T001", "unknown technique " + quoted(id), did_you_mean(id, ids), help);
+}
+
+const ParameterInfo* find_parameter(const TechniqueInfo& technique, std::string_view name,
+                                    Problems& problems) {
+  std::vector<std::string> names;
+  for (const ParameterInfo& p : technique.parameters) {
+    if (p.name == name) return &p;
+    names.emplace_back(p.name);
+  }
+  add(problems, "T002", "technique " + quoted(technique.id) + " has no parameter " + quoted(name),
+      did_you_mean(name, names), "`hwsim show " + std::string(technique.id) + "` lists them");
+  return nullptr;
+}
+
+std::string number_text(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
+std::string_view choice_name(std::string_view choices, double index) {
+  for (; index >= 1.0; --index) choices.remove_prefix(choices.find('|') + 1);
+  return choices.substr(0, choices.find('|'));
+}
+
+double choice_index(std::string_view choices, std::string_view value) {
+  for (double index = 0;; ++index) {
+    const std::size_t bar = choices.find('|');
+    if (choices.substr(0, bar) == value) return index;
+    if (bar == std::string_view::npos) return -1;
+    choices.remove_prefix(bar + 1);
+  }
+}
+
+double parse_value(const TechniqueInfo& technique, const ParameterInfo& p, std::string_view text,
+                   Problems& problems) {
+  double value = p.choices.empty() ? 0 : choice_index(p.choices, text);
+  if (!p.choices.empty() && value >= 0) return value;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool number =  // not an index into choices: those may be numbers themselves
+      p.choices.empty() && error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  if (number && value >= p.min && value <= p.max) return value;
+  add(problems, "T003",
+      "technique " + quoted(technique.id) + ": " + std::string(p.name) + " = " + std::string(text) +
+          (p.choices.empty() ? ", must be between " + number_text(p.min) + " and " + number_text(p.max)
+                             : ", must be one of " + std::string(p.choices)),
+      "", "`hwsim show " + std::string(technique.id) + "` describes it");
+  return p.default_value;
+}
+
+TechniquePart parse_part(std::string_view text, std::string_view whole, Problems& problems) {
+  const std::size_t colon = text.find(':');
+  TechniquePart part;
+  part.info = find_technique(text.substr(0, colon));
+  if (part.info == nullptr) {
+    add_unknown(problems, text.substr(0, colon), whole);
+    return part;
+  }
+  for (const ParameterInfo& p : part.info->parameters) part.parameters.emplace(p.name, p.default_value);
+  std::string_view rest = colon == std::string_view::npos ? "" : text.substr(colon + 1);
+  while (!rest.empty()) {
+    const std::size_t comma = rest.find(',');
+    const std::string_view pair = rest.substr(0, comma);
+    const std::size_t equals = pair.find('=');
+    if (equals == std::string_view::npos)
+      add(problems, "T002", "technique parameter " + quoted(pair) + " has no value", "",
+          "write it as key=value");
+    else if (const ParameterInfo* p = find_parameter(*part.info, pair.substr(0, equals), problems))
+      part.parameters[std::string(p->name)] = parse_value(*part.info, *p, pair.substr(equals + 1), problems);
+    rest = comma == std::string_view::npos ? std::string_view{} : rest.substr(comma + 1);
+  }
+  return part;
+}
+
+std::string_view refusal(const TechniqueInfo& a, const TechniqueInfo& b) {
+  const std::string_view reason = a.refuses != nullptr ? a.refuses(b) : "";
+  return !reason.empty() || b.refuses == nullptr ? reason : b.refuses(a);
+}
+
+void check_pair(const TechniqueInfo& a, const TechniqueInfo& b, Problems& problems) {
+  const std::string both = quoted(a.id) + " and " + quoted(b.id);
+  const std::string reason(refusal(a, b));
+  if (a.id == b.id)
+    add(problems, "T004", quoted(a.id) + " is named twice", "", "write each technique once");
+  else if (a.kind() == TechniqueKind::base && b.kind() == TechniqueKind::base)
+    add(problems, "T004",
+        both + " cannot be combined: each draws the whole frame" + (reason.empty() ? "" : "; " + reason), "",
+        "combine one base with modifiers and filters; `hwsim list techniques` says which is which");
+  else if (!reason.empty())
+    add(problems, "T004", both + " cannot be combined: " + reason, "",
+        "`hwsim show " + std::string(a.id) + "` describes it");
+}
+
+/// The image as the output of a frame without passes.
+pipeline::FrameGraph start_from_image(const TechniqueChoice& choice, const FrameRequest& request) {
+  require_filters(choice);
+  pipeline::FrameGraph graph(request.scene, request.image->width, request.image->height);
+  graph.set_output(graph.add_image(
+      {"image", Format::rgba8_srgb, request.image->width, request.image->height, 1}, request.image));
+  return graph;
+}
+
+}  // namespace
+
+std::string_view kind_name(TechniqueKind kind) {
+  constexpr std::array<std::string_view, 3> kNames = {"base", "modifier", "filter"};
+  return kNames.at(static_cast<std::size_t>(kind));
+}
+
+const TechniquePart& TechniqueChoice::base() const {
+  return *std::find_if(parts.begin(), parts.end(),
+                       [](const TechniquePart& part) { return part.info->kind() == TechniqueKind::base; });
+}
+
+TechniqueChoice parse_technique(std::string_view text) {
+  Problems problems;
+  TechniqueChoice choice;
+  bool has_base = false;
+  for (std::string_view rest = text;;) {
+    const std::size_t plus = rest.find('+');
+    TechniquePart part = parse_part(rest.substr(0, plus), text, problems);
+    if (part.info != nullptr) {
+      has_base = has_base || part.info->kind() == TechniqueKind::base;
+      choice.parts.push_back(std::move(part));
+    }
+    if (plus == std::string_view::npos) break;
+    rest.remove_prefix(plus + 1);
+  }
+  if (!has_base) choice.parts.push_back({find_technique("none"), {}});
+  for (std::size_t i = 0; i < choice.parts.size(); ++i)
+    for (std::size_t j = i + 1; j < choice.parts.size(); ++j)
+      check_pair(*choice.parts[i].info, *choice.parts[j].info, problems);
+  if (!problems.empty()) throw InputError(std::move(problems), ExitStatus::usage);
+  const auto order = [](const TechniquePart& part) {
+    constexpr std::array<int, 3> kRank = {1, 0, 2};  // base, modifier, filter
+    return kRank.at(static_cast<std::size_t>(part.info->kind()));
+  };
+  std::stable_sort(choice.parts.begin(), choice.parts.end(),
+                   [&](const auto& a, const auto& b) { return order(a) < order(b); });
+  return choice;
+}
+
+std::string technique_text(const TechniquePart& part, bool complete) {
+  std::string parameters;
+  for (const ParameterInfo& p : part.info->parameters) {
+    const double value = part.parameters.find(p.name)->second;
+    if (!complete && value == p.default_value) continue;
+    parameters += (parameters.empty() ? ":" : ",") + std::string(p.name) + "=" +
+                  (p.choices.empty() ? number_text(value) : std::string(choice_name(p.choices, value)));
+  }
+  return std::string(part.info->id) + parameters;
+}
+
+std::string technique_text(const TechniqueChoice& choice, bool complete) {
+  std::string text;
+  for (const TechniquePart& part : choice.parts) {
+    if (part.info->id == "none" && choice.parts.size() > 1) continue;
+    text += (text.empty() ? "" : "+") + technique_text(part, complete);
+  }
+  return text;
+}
+
+void require_filters(const TechniqueChoice& choice) {
+  std::string filters;
+  for (const TechniqueInfo& t : techniques())
+    if (t.kind() == TechniqueKind::filter) filters += (filters.empty() ? "" : ", ") + std::string(t.id);
+  bool any_filter = false, draws = false;
+  for (const TechniquePart& part : choice.parts) {
+    any_filter = any_filter || part.info->kind() == TechniqueKind::filter;
+    draws = draws || (part.info->kind() != TechniqueKind::filter && part.info->id != "none");
+  }
+  if (any_filter && !draws) return;
+  Problems problems;
+  add(problems, "T005", quoted(technique_text(choice)) + " draws a scene, and the input is an image", "",
+      "filters of images: " + filters);
+  throw InputError(std::move(problems), ExitStatus::usage);
+}
+
+pipeline::FrameGraph build_frame(const TechniqueChoice& choice, const FrameRequest& request) {
+  FrameRequest modified = request;
+  for (const TechniquePart& part : choice.parts)
+    if (part.info->modify != nullptr) part.info->modify(modified, part.parameters);
+  const TechniquePart& base = choice.base();
+  pipeline::FrameGraph graph =
+      request.image ? start_from_image(choice, request) : base.info->build(modified, base.parameters);
+  for (const TechniquePart& part : choice.parts)
+    if (part.info->filter != nullptr)
+      graph.set_output(part.info->filter(graph, graph.output(), part.parameters), Format::rgba8_srgb);
+  return graph;
+}
+
+}  // namespace hwsim::algos

@@ -1,0 +1,32 @@
+#pragma once
+// Shaders of wire anti-aliasing (techniques 6).
+#include "algos/base/technique.h"
+#include "pipeline/shade/lighting.h"
+#include "pipeline/shade/mesh_vertex.h"
+
+namespace hwsim::algos {
+
+struct WireVertexUniforms {
+  glm::mat4 clip_from_world{1.0f};
+  float pixel_scale = 0.0f;  ///< half the height of a pixel in the world where w = 1
+  float width_px = 1.0f;
+};
+
+struct WireUniforms {
+  pipeline::LightingUniforms lighting;
+  float pixel_scale = 0.0f;
+  WireOptions options;
+};
+
+/// Varyings beyond those of surfaces, all of which a wire has.
+struct WireVaryings {
+  static constexpr int kFade = pipeline::SurfaceVaryings::kFull, kRadius = kFade + 1, kW = kFade + 2,
+                       kCount = kFade + 3;
+};
+
+enum class WirePart { all, wide, faded };  ///< fragments of wires above, or below, the least width
+
+const pipeline::VertexProgram& wire_vertex_program();
+const pipeline::FragmentProgram& wire_program(WirePart part);
+
+}  // namespace hwsim::algos
