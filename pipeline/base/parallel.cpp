@@ -1,3 +1,4 @@
+// The loop of parallel.h on oneTBB, whose threads outlive a loop.
 #include "pipeline/base/parallel.h"
 
 #include <tbb/global_control.h>
