@@ -135,8 +135,9 @@ def main():
     args = parser.parse_args()
     if not args.event_study:
         args.event_study = os.path.join(os.path.dirname(os.path.abspath(args.hwsim)), "event_study")
-    print("# Counts beside published ones\n\nPrinted by `scripts/counts.py`. 1280x720, default cameras. "
-          "The scenes are stand-ins for those of the paper.\n")
+    print("# Counts beside published ones\n\nThis page puts the counts that papers print beside hwsim's: shaded samples, memory, shading "
+          "events, primitives. Counts need no calibration.\n`scripts/counts.py` prints them, at 1280x720 with the default cameras. "
+          "The scenes are stand-ins for those of the papers.\n")
     print("## Shaded samples (SBAA, Table 3)\n")
     print("REFER: pixels, and the further samples of complex ones (Lauritzen 2010). TOP and MERGE: surfaces that were\n"
           "lit; a pixel without any counts once, as for REFER. Their published counts follow from the printed\n"
