@@ -21,6 +21,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/hwsim ${PROJECT_SOURCE_DIR}/pipeline ${P
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/configs DESTINATION ${CMAKE_INSTALL_DATADIR}/hwsim)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CHANGELOG.md
         DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR})  # values' sources name its pages
 
 install(EXPORT hwsimTargets NAMESPACE hwsim:: DESTINATION ${hwsim_package_dir})
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/hwsimConfig.cmake.in
