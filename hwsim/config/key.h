@@ -15,10 +15,12 @@ enum KeyFlag : std::uint8_t {
   kNoFlags = 0,
   kRequired = 1,  ///< no default: a file must say it
   kFit = 2,       ///< calibration may move it inside its interval
-  kRate = 4,      ///< more of it never takes longer
-  kCost = 8,      ///< more of it never takes shorter
-  kWhole = 16,    ///< a real in the model (so that it has a derivative), a whole number in files
+  kFaster = 4,    ///< a larger value, or the switch turned on, never makes a pass take longer
+  kSlower = 8,    ///< it never makes a pass take shorter
+  kNeither = 16,  ///< it changes times in both directions; a key without a direction enters no time
+  kWhole = 32,    ///< a real in the model (so that it has a derivative), a whole number in files
 };
+inline constexpr unsigned kDirections = kFaster | kSlower | kNeither;
 
 struct KeyInfo {
   std::string_view name;  ///< "core_clock_mhz", "features.native_msaa_max"

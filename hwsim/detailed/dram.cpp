@@ -7,13 +7,13 @@ namespace hwsim {
 namespace {
 
 constexpr double kLineBytes = 64.0;
-constexpr std::uint64_t kInterleaveLines = 4;  // 256 bytes go to one channel
-constexpr std::size_t kWriteGroup = 32;        // as kDramWriteGroup of the closed form
-constexpr double kWriteGroupsWaiting = 2.0;    // of a channel: one fills while one is written
 
 }  // namespace
 
-Dram::Dram(const GpuConfig& gpu) {
+Dram::Dram(const GpuConfig& gpu)
+    : interleave_lines_(static_cast<std::uint64_t>(gpu.dram_interleave_bytes) /
+                        static_cast<std::uint64_t>(kLineBytes)),
+      write_lines_(static_cast<std::size_t>(gpu.dram_write_lines)) {
   const double channels = gpu.dram_channels;
   // The efficiency is what long reads in order reach: refresh, gaps between bank groups and the like. Rows
   // and turns of the bus come on top.
@@ -26,10 +26,12 @@ Dram::Dram(const GpuConfig& gpu) {
   // The config's latency is that of an idle DRAM with the row closed.
   latency_ns_ =
       std::max(0.0, (gpu.dram_latency_cycles - gpu.l2_latency_cycles) * clk_ns - row_miss_ns_ - line_ns_);
-  write_room_ns_ = kWriteGroupsWaiting * static_cast<double>(kWriteGroup) * line_ns_ + row_miss_ns_;
+  write_room_ns_ = static_cast<double>(gpu.dram_write_groups) * static_cast<double>(write_lines_) * line_ns_ +
+                   row_miss_ns_;
   lines_a_row_ = static_cast<std::uint64_t>(std::max(1.0, gpu.dram_row_bytes / kLineBytes));
   channels_.resize(static_cast<std::size_t>(channels));
-  for (Channel& channel : channels_) channel.banks.resize(static_cast<std::size_t>(gpu.dram_banks));
+  for (Channel& channel : channels_)
+    channel.banks.assign(static_cast<std::size_t>(gpu.dram_banks), Bank(gpu.dram_queue_rows));
 }
 
 void Dram::turn(Channel& channel, bool writing, double now_ns) {
@@ -56,15 +58,15 @@ double Dram::transfer(Channel& channel, std::uint64_t line, double now_ns) {
 }
 
 double Dram::access(std::uint64_t line, bool write, double now_ns) {
-  const std::uint64_t group = line / kInterleaveLines;
+  const std::uint64_t group = line / interleave_lines_;
   Channel& channel = channels_[group % channels_.size()];
-  const std::uint64_t inside = group / channels_.size() * kInterleaveLines + line % kInterleaveLines;
+  const std::uint64_t inside = group / channels_.size() * interleave_lines_ + line % interleave_lines_;
   if (!write) {
     turn(channel, false, now_ns);
     return transfer(channel, inside, now_ns) + latency_ns_;
   }
   channel.writes.push_back(inside);
-  if (channel.writes.size() < kWriteGroup) return now_ns;
+  if (channel.writes.size() < write_lines_) return now_ns;
   turn(channel, true, now_ns);
   std::sort(channel.writes.begin(), channel.writes.end());
   double done = now_ns;

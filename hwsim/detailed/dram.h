@@ -1,6 +1,5 @@
 #pragma once
 // DRAM as channels of banks with open rows: what the queue engine's one efficiency stands for.
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -28,9 +27,9 @@ class Dram {
   struct Bank {
     /// Rows that requests in the controller's queue are for: it serves all of one row together (first ready,
     /// first come, first served), so returning to one of these opens none.
-    std::array<std::uint64_t, 4> rows;
+    std::vector<std::uint64_t> rows;
     std::size_t oldest = 0;
-    Bank() { rows.fill(~std::uint64_t{0}); }
+    explicit Bank(int queue_rows) : rows(static_cast<std::size_t>(queue_rows), ~std::uint64_t{0}) {}
     double ready_ns = 0.0;        ///< of the open row
     Calendar activations{512.0};  ///< one takes a row cycle
   };
@@ -45,7 +44,8 @@ class Dram {
   void turn(Channel& channel, bool writing, double now_ns);
 
   double line_ns_, row_miss_ns_, row_cycle_ns_, turn_ns_, latency_ns_, write_room_ns_;
-  std::uint64_t lines_a_row_;
+  std::uint64_t lines_a_row_, interleave_lines_;
+  std::size_t write_lines_;
   std::uint64_t row_misses_ = 0;
   std::vector<Channel> channels_;
 };

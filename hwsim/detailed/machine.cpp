@@ -6,7 +6,6 @@
 namespace hwsim {
 namespace {
 
-constexpr std::size_t kCoreMissesMax = 256;  // lines on their way to a core
 constexpr std::size_t kLinesMin = 16;
 constexpr std::size_t kNoCore = ~std::size_t{0};
 
@@ -68,6 +67,7 @@ Machine::Machine(const PassWork& pass, const PacketPlan& plan, const GpuConfig& 
       events_max_(events_without_progress_max),
       unit_lines_max_(static_cast<std::size_t>(rates.unit_lines)),
       fifo_packets_(static_cast<std::size_t>(rates.queue_packets)),
+      core_lines_max_(static_cast<std::size_t>(gpu.core_lines_max)),
       memory_(gpu, seed),
       random_(seed ^ 0x5bd1e995),
       l1_survival_(survival(pass.reuse.texture_l1.read_bytes, pass.reuse.texture_l1.requested_read_bytes,
@@ -76,7 +76,7 @@ Machine::Machine(const PassWork& pass, const PacketPlan& plan, const GpuConfig& 
   leave_done_.assign(fifo_packets_, 0.0);
   const auto cores = static_cast<std::size_t>(rates.shader_cores);
   cores_.reserve(cores);
-  for (std::size_t i = 0; i < cores; ++i) cores_.emplace_back(l1_lines(rates), seed + 100 + i);
+  for (std::size_t i = 0; i < cores; ++i) cores_.emplace_back(l1_lines(rates), gpu.l1_ways, seed + 100 + i);
   for (std::size_t i = 0; i < kStreamCount; ++i) {
     const auto stream = static_cast<Stream>(i);
     const MissCurve& curve = curve_of(pass.reuse, stream);
@@ -259,7 +259,7 @@ bool Machine::ask_lines(Core& core, Subgroup& s, double now) {
   const double start = std::max(now, s.asks_from_ns);
   while (s.textures > 0.0 || s.loads > 0.0) {
     while (!core.misses.empty() && core.misses.front() <= start) core.misses.pop_front();
-    if (core.misses.size() >= kCoreMissesMax) return false;
+    if (core.misses.size() >= core_lines_max_) return false;
     const bool texture = s.textures > 0.0;
     const Stream stream = texture ? Stream::texture : Stream::storage;
     const double arrives =

@@ -57,7 +57,8 @@ class Machine {
     double asks_from_ns = 0.0, ready_ns = 0.0;
   };
   struct Core {
-    Core(std::size_t l1_lines, std::uint64_t seed) : l1(l1_lines, 8), reads(0, 2 * l1_lines, seed) {}
+    Core(std::size_t l1_lines, int l1_ways, std::uint64_t seed)
+        : l1(l1_lines, static_cast<std::size_t>(l1_ways)), reads(0, 2 * l1_lines, seed) {}
     double alu_ns = 0.0, sfu_ns = 0.0, memory_pipe_ns = 0.0, tex_ns = 0.0;  ///< when each pipe is free
     double resident = 0.0;
     LineCache l1;
@@ -105,6 +106,7 @@ class Machine {
   std::uint64_t events_max_, events_since_progress_ = 0;
   std::size_t unit_lines_max_;
   std::size_t fifo_packets_;  ///< between two units
+  std::size_t core_lines_max_;
   MemorySystem memory_;
   Random random_;
   std::array<Survival, kStreamCount> reads_, writes_;

@@ -5,7 +5,6 @@
 namespace hwsim {
 namespace {
 
-constexpr std::size_t kL2Ways = 16;
 constexpr std::size_t kLinesMax = 4u << 20;  // 256 MiB: larger caches are as good as this one
 
 constexpr int kClientShift = 40;
@@ -57,7 +56,7 @@ LineCache::Outcome LineCache::access(std::uint64_t line, bool write) {
 }
 
 MemorySystem::MemorySystem(const GpuConfig& gpu, std::uint64_t seed)
-    : l2_(l2_lines(gpu), kL2Ways), dram_(gpu), random_(seed + 50) {
+    : l2_(l2_lines(gpu), static_cast<std::size_t>(gpu.l2_ways)), dram_(gpu), random_(seed + 50) {
   const double clk_ns = 1000.0 / gpu.core_clock_mhz;
   l2_line_ns_ = kTextureLineBytes * clk_ns / gpu.l2_bytes_per_clk;
   // Latencies are those seen by a texture request; that of L1 is part of them.

@@ -48,7 +48,7 @@ void share_bytes(const PassCounters& c, const TrafficModel<double>& model, const
       chunk.direct.read[i] += model.tile_chunk.read[i] / n;
       chunk.direct.write[i] += model.tile_chunk.write[i] / n;
     }
-    const double binned = binned_bytes(c, model.tile_px) / n;
+    const double binned = binned_bytes(c, model.tile_px, r) / n;
     chunk.direct.read[at(Stream::other)] += binned;
     chunk.direct.write[at(Stream::other)] += binned;
   }

@@ -27,7 +27,7 @@ struct Origin {
   std::optional<std::array<double, 2>> interval;  ///< bounds for calibration, or of a fit
   std::string file;                               ///< empty when built in or set on the command line
   int line = 0;
-  std::string to_string() const;  ///< "gtx470.toml:12, published [HEX]", "--set", "built-in default"
+  std::string to_string() const;  ///< "gtx470.toml:12, published [HEX]", "--set", "built-in default, assumed"
 };
 
 /// The numbers that enter the timing model, over the scalar type: double to predict, Jets to fit.
@@ -61,6 +61,8 @@ struct GpuValues {
   T tex_efficiency_ratio{1.0};
   T tex_latency_cycles{150.0};
   T l1_size_kib{16.0};
+  int l1_ways = 8;
+  int core_lines_max = 256;
   T l1_fill_bytes_per_core_clk{64.0};
 
   T draw_cycles{8.0};
@@ -112,6 +114,8 @@ struct GpuValues {
   T l2_size_kib{0.0};
   T l2_bytes_per_clk{0.0};
   T l2_latency_cycles{220.0};
+  int l2_ways = 16;
+  T unit_lines_max{512.0};
   T dram_latency_cycles{400.0};
   T llc_size_kib{0.0};
   T dram_bandwidth_gb_s{0.0};
@@ -119,12 +123,17 @@ struct GpuValues {
   T dram_cpu_share_ratio{0.0};
   int dram_channels = 4;
   int dram_banks = 16;
+  int dram_interleave_bytes = 256;
+  int dram_queue_rows = 4;
+  int dram_write_lines = 32;
+  int dram_write_groups = 2;
   T dram_row_bytes{2048.0};
   T dram_row_miss_ns{26.0};
   T dram_row_cycle_ns{43.0};
   T dram_turn_ns{8.0};
   bool tile_based = false;
   int tile_px = 256;
+  T tile_list_entry_bytes{8.0};
   T tile_memory_kib{8.0};
 
   T pass_overhead_us{10.0};

@@ -34,10 +34,11 @@ struct GpuRates {
   T unit_lines;  ///< that a fixed-function unit has on their way
   T l2_bytes;    ///< with the last-level cache behind it
   T crop_cache_bytes, zrop_cache_bytes, llc_bytes;
-  T color_delta_ratio, tile_memory_bytes;
+  T color_delta_ratio, tile_memory_bytes, tile_list_entry_bytes;
   T clear_color_tile_bytes, clear_depth_tile_bytes;
   T pass_overhead_ns, roofline_exponent;
   int subgroup_size, queue_packets;
+  int dram_write_lines;  ///< that a channel writes together
   int compression_granule_bytes, msaa_color_block_bytes, depth_plane_slots, tile_px;
   bool vliw;  ///< special functions take a slot of the words
   bool interp_on_alu, crop_compressible_at_pixel_rate, msaa_color_compression, rop_through_l2, tile_based;
@@ -158,10 +159,8 @@ void derive_memory(const GpuValues<T>& c, const T& clk_ns, GpuRates<T>& r) {
   r.l2_byte_ns = clk_ns / c.l2_bytes_per_clk;
   r.dram_byte_ns = 1.0 / (c.dram_bandwidth_gb_s * c.dram_efficiency_ratio * (1.0 - c.dram_cpu_share_ratio));
   r.dram_turn_ns = T(c.dram_turn_ns) / static_cast<double>(c.dram_channels);
-  // They are built to keep DRAM busy: bandwidth x latency, and half as many again.
-  constexpr double kLineBytes = 64.0, kLinesMin = 512.0;
-  r.unit_lines =
-      larger(T(kLinesMin), T(1.5 * c.dram_bandwidth_gb_s * c.dram_latency_cycles * clk_ns / kLineBytes));
+  r.dram_write_lines = c.dram_write_lines;
+  r.unit_lines = c.unit_lines_max;
   r.l2_bytes = (c.l2_size_kib + c.llc_size_kib) * kKib;
   r.crop_cache_bytes = c.crop_cache_kib * kKib;
   r.zrop_cache_bytes = c.zrop_cache_kib * kKib;
@@ -172,6 +171,7 @@ void derive_memory(const GpuValues<T>& c, const T& clk_ns, GpuRates<T>& r) {
   r.depth_plane_slots = c.depth_plane_slots;
   r.depth_offset_forms = c.depth_offset_forms;
   r.tile_px = c.tile_px;
+  r.tile_list_entry_bytes = c.tile_list_entry_bytes;
   r.tile_memory_bytes = c.tile_memory_kib * kKib;
   r.clear_color_tile_bytes = c.fast_clear_color_bytes_per_tile;
   r.clear_depth_tile_bytes = c.fast_clear_depth_bytes_per_tile;

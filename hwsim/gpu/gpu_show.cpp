@@ -148,7 +148,7 @@ std::string_view provenance_name(Provenance provenance) {
 }
 
 std::string Origin::to_string() const {
-  if (layer == Layer::built_in) return "built-in default";
+  if (layer == Layer::built_in) return "built-in default, assumed";
   if (layer == Layer::command_line) return "--set";
   std::string text = std::filesystem::path(file).filename().string() + ":" + std::to_string(line);
   if (layer == Layer::overlay) text += " (overlay)";

@@ -15,8 +15,6 @@ struct ChunkCost {
   ChunkCost() { ns.fill(T(0.0)); }
 };
 
-inline constexpr double kDramWriteGroup = 32.0;  ///< lines that a channel writes together
-
 struct IssuedOps {
   double alu = 0.0, sfu = 0.0;
 };
@@ -235,7 +233,7 @@ T dram_ns(const StreamBytesOf<T>& bytes, const GpuRates<T>& r) {
   T read(0.0), write(0.0);
   for (const T& b : bytes.read) read += b;
   for (const T& b : bytes.write) write += b;
-  const T groups = smaller(T(write / kDramWriteGroup), read) / kTextureLineBytes;
+  const T groups = smaller(T(write / static_cast<double>(r.dram_write_lines)), read) / kTextureLineBytes;
   return (read + write) * r.dram_byte_ns + 2.0 * groups * r.dram_turn_ns;
 }
 

@@ -247,12 +247,12 @@ inline double ring_bytes(const PassCounters& c, bool gs_on_chip) {
 /// What binning writes and the tiles read back: vertices once, as L2 keeps what neighboring tiles share, and
 /// an entry for each triangle in each tile's list. A triangle of one 8x8 tile lies in one tile; of larger
 /// ones, as many 8x8 tiles as fit share an entry.
-inline double binned_bytes(const PassCounters& c, double tile_px) {
-  constexpr double kEntryBytes = 8.0;
+template <class T>
+T binned_bytes(const PassCounters& c, double tile_px, const GpuRates<T>& r) {
   const auto drawn = static_cast<double>(c.setup.out_primitives);
   const double further = std::max(0.0, static_cast<double>(c.raster.visited_tiles) - drawn);
   return 4.0 * static_cast<double>(c.vs.output_scalars) +
-         kEntryBytes * (drawn + further * kTilePixels / tile_px);
+         r.tile_list_entry_bytes * (drawn + further * kTilePixels / tile_px);
 }
 
 template <class T>
@@ -272,8 +272,9 @@ ChunkTraffic<T> chunk_traffic(const PassCounters& c, const TrafficModel<T>& mode
   traffic.l2_bytes += T(2.0 * ring);
   if (rates.tile_based) {
     traffic.dram += model.tile_chunk;
-    traffic.dram.write[at(Stream::other)] += binned_bytes(c, model.tile_px);
-    traffic.dram.read[at(Stream::other)] += binned_bytes(c, model.tile_px);
+    const T binned = binned_bytes(c, model.tile_px, rates);
+    traffic.dram.write[at(Stream::other)] += binned;
+    traffic.dram.read[at(Stream::other)] += binned;
   }
   return traffic;
 }

@@ -190,11 +190,12 @@ TEST(DetailedUnits, MemoryTakesTheLatencyOfItsLevel) {
   EXPECT_NEAR(read(never, 10'000.0), 1.0 + 250 - 100, 1e-9);
 }
 
-// As many lines are on their way as bandwidth and latency ask for; the next one waits for the first to come.
+// The line that the buffers have no place for waits for the first to come.
 TEST(DetailedUnits, FixedFunctionUnitsWaitWhenTheirLinesAreOnTheirWayAndNotOneEarlier) {
   GpuConfig gpu = sample_gpu();
   gpu.tex_latency_cycles = 100;
   gpu.dram_latency_cycles = 700;
+  gpu.unit_lines_max = 82'031.25;
   const GpuRates<double> rates = derive_rates<double>(gpu);
   PassCounters c;
   c.mem.vertex_read_bytes = 64;
@@ -210,6 +211,25 @@ TEST(DetailedUnits, FixedFunctionUnitsWaitWhenTheirLinesAreOnTheirWayAndNotOneEa
     Machine machine(pass, bench.plan, gpu, rates, 1'000'000, 1);
     EXPECT_NEAR(machine.enter_until(1).ns, 1.0 + more * (700 - 100), 0.1) << more;
   }
+}
+
+/// Lines of rows of one bank of the only channel, `rows` rows in turn.
+std::uint64_t openings(GpuConfig gpu, std::uint64_t rows) {
+  gpu.dram_channels = gpu.dram_banks = 1;
+  gpu.dram_row_bytes = 1024;
+  Dram dram(gpu);
+  for (std::uint64_t turn = 0; turn < 8; ++turn)
+    for (std::uint64_t row = 0; row < rows; ++row) dram.access(16 * row + turn, false, 0.0);
+  return dram.row_misses();
+}
+
+TEST(DetailedUnits, AQueueOfRowsOpensNoRowTwiceThatItHoldsAndEveryOneThatItDoesNot) {
+  EXPECT_EQ(openings(sample_gpu(), 4), 4u);  // the default holds four
+  EXPECT_EQ(openings(sample_gpu(), 5), 40u);
+  GpuConfig one = sample_gpu();
+  one.dram_queue_rows = 1;
+  EXPECT_EQ(openings(one, 1), 1u);
+  EXPECT_EQ(openings(one, 2), 16u);
 }
 
 }  // namespace

@@ -42,6 +42,8 @@ inline GpuConfig sample_gpu() {
   c.l2_bytes_per_clk = 5000;
   c.dram_bandwidth_gb_s = 5000.0;
   c.dram_efficiency_ratio = 1.0;
+  c.unit_lines_max =
+      46'875;  // as many as keep DRAM busy for its latency of 400 cycles, and half as many again
   c.pass_overhead_us = 0.0;
   return c;
 }
