@@ -35,14 +35,28 @@ const char* severity_color(Severity severity) {
   return "";
 }
 
+/// What fits a terminal of a long line, with the marked column in it.
+SourcePlace excerpt(SourcePlace place) {
+  constexpr size_t kColumns = 160, kBefore = 60;
+  if (place.line_text.size() <= kColumns) return place;
+  const auto column = static_cast<size_t>(std::max(1, place.column));
+  const size_t first = std::min(column > kBefore ? column - kBefore : 0, place.line_text.size());
+  place.line_text = std::string(whole_characters(place.line_text, first, kColumns));
+  place.column = static_cast<int>(column - first);
+  const size_t room = place.line_text.size() + 1 - std::min(column - first, place.line_text.size());
+  place.length = std::min(place.length, static_cast<int>(room));
+  return place;
+}
+
 void append_excerpt(std::string& out, const Diagnostic& d) {
-  const std::string number = std::to_string(d.place.line);
+  const SourcePlace place = excerpt(d.place);
+  const std::string number = std::to_string(place.line);
   const std::string margin(number.size(), ' ');
-  out += margin + " |\n" + number + " | " + d.place.line_text + "\n" + margin + " | ";
-  const auto column = static_cast<size_t>(std::max(1, d.place.column));
+  out += margin + " |\n" + number + " | " + place.line_text + "\n" + margin + " | ";
+  const auto column = static_cast<size_t>(std::max(1, place.column));
   for (size_t i = 0; i + 1 < column; ++i)  // a tab stays a tab, so that the mark stands below its column
-    out += i < d.place.line_text.size() && d.place.line_text[i] == '\t' ? '\t' : ' ';
-  out += std::string(static_cast<size_t>(std::max(1, d.place.length)), '^');
+    out += i < place.line_text.size() && place.line_text[i] == '\t' ? '\t' : ' ';
+  out += std::string(static_cast<size_t>(std::max(1, place.length)), '^');
   if (!d.hint.empty()) out += " " + d.hint;
   out += "\n";
 }
@@ -92,18 +106,53 @@ std::string render(const Diagnostic& d, bool color) {
   return out;
 }
 
+std::string_view whole_characters(std::string_view text, std::size_t first, std::size_t bytes_max) {
+  const auto continues = [&text](std::size_t i) {
+    return i < text.size() && (static_cast<unsigned char>(text[i]) & 0xc0) == 0x80;
+  };
+  first = std::min(first, text.size());
+  std::size_t last = first + std::min(bytes_max, text.size() - first);
+  while (last > first && continues(last)) --last;
+  while (first < last && continues(first)) ++first;
+  return text.substr(first, last - first);
+}
+
+std::string shortened(std::string_view name) {
+  constexpr std::size_t kShown = 80;
+  if (name.size() <= kShown) return std::string(name);
+  return std::string(whole_characters(name, 0, kShown)) + "...";
+}
+
+void keep_first(std::vector<Diagnostic>& problems) {
+  if (problems.size() <= kProblemsShown) return;
+  const std::size_t left_out = problems.size() - (kProblemsShown - 1);
+  problems.resize(kProblemsShown - 1);
+  Diagnostic& rest = problems.emplace_back();
+  rest.code = problems.front().code;
+  rest.message = std::to_string(left_out) + " further problems are not listed";
+  rest.place.file = problems.front().place.file;
+  rest.help = "mend those above first";
+}
+
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates) {
   std::string best;
   size_t best_distance = 0;
   for (const std::string& candidate : candidates) {
+    const auto [shorter, longer] = std::minmax({name.size(), candidate.size()});
+    const size_t limit = std::max<size_t>(1, longer / 3);
+    if (longer - shorter > limit) continue;  // as many letters differ at least
     const size_t distance = edit_distance(name, candidate);
-    const size_t limit = std::max<size_t>(1, std::max(name.size(), candidate.size()) / 3);
     if (distance <= limit && (best.empty() || distance < best_distance)) {
       best = candidate;
       best_distance = distance;
     }
   }
   return best;
+}
+
+std::string did_you_mean(std::string_view name, std::span<const std::string> candidates) {
+  const std::string nearest = nearest_name(name, candidates);
+  return nearest.empty() ? "" : "did you mean `" + nearest + "`?";
 }
 
 }  // namespace hwsim

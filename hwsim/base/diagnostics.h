@@ -1,5 +1,6 @@
 #pragma once
 // Messages to the user about the user's input: what is wrong, where, what was meant, how to go on.
+#include <cstddef>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -15,8 +16,8 @@ struct SourcePlace {
   std::string file;
   int line = 0;
   int column = 0;
-  int length = 1;         ///< columns to underline
-  std::string line_text;  ///< the line itself, without its newline; empty when unknown
+  int length = 1;           ///< columns to underline
+  std::string line_text{};  ///< the line itself, without its newline; empty when unknown
 };
 
 struct Diagnostic {
@@ -55,8 +56,22 @@ class InputError : public std::runtime_error {
 /// The message in the shape of interfaces section 6, ending in a newline.
 std::string render(const Diagnostic& diagnostic, bool color);
 
+/// As many messages of one input are shown: the first causes. The others are counted in one more.
+inline constexpr std::size_t kProblemsShown = 20;
+/// Cuts `problems` to kProblemsShown, the last of which says how many are left out.
+void keep_first(std::vector<Diagnostic>& problems);
+
+/// At most `bytes_max` bytes of `text` from `first` on, without parts of UTF-8 characters at the ends.
+std::string_view whole_characters(std::string_view text, std::size_t first, std::size_t bytes_max);
+
+/// A name for a message: its beginning and "..." where it is long.
+std::string shortened(std::string_view name);
+
 /// The candidate nearest to `name` by edit distance (transpositions count 1), or "" if none is near enough
 /// (more than a third of the longer name's length away).
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates);
+
+/// "did you mean `l2_size_kib`?" with the nearest candidate, or "" if none is near enough.
+std::string did_you_mean(std::string_view name, std::span<const std::string> candidates);
 
 }  // namespace hwsim

@@ -45,4 +45,7 @@ Diagnostic unknown_key(std::span<const Key> keys, std::string_view name, std::st
 /// the path.
 SourcePlace command_line_place(const Assignment& assignment, bool at_value);
 
+/// The value of a `--set`; none, and C021 with its place, where it is no TOML scalar.
+std::optional<TomlValue> value_of_assignment(const Assignment& assignment, std::vector<Diagnostic>& problems);
+
 }  // namespace hwsim

@@ -13,6 +13,10 @@ std::string bounds_text(const KeyInfo& info) {
   return "must be between " + to_toml(info.low) + " and " + to_toml(info.high);
 }
 
+std::string meaning(const KeyInfo& info) {
+  return "`" + std::string(info.name) + "`: " + std::string(info.description);
+}
+
 bool is_switch_or_text(const Key& key) {
   return std::holds_alternative<bool*>(key.slot) || std::holds_alternative<std::string*>(key.slot);
 }
@@ -23,7 +27,7 @@ Diagnostic wrong_type(const Key& key, const TomlValue& value, const SourcePlace&
   d.message = "`" + std::string(key.info.name) + "` is a " + std::string(type_name(value)) + ", must be a " +
               std::string(expected_type(key));
   d.place = place;
-  d.help = "`" + std::string(key.info.name) + "`: " + std::string(key.info.description);
+  d.help = "give a " + std::string(expected_type(key)) + "; " + meaning(key.info);
   return d;
 }
 
@@ -43,7 +47,7 @@ Diagnostic out_of_range(const Key& key, const TomlValue& value, const SourcePlac
   d.code = "C014";
   d.message = "`" + std::string(key.info.name) + "` is " + to_toml(value) + ", " + bounds_text(key.info);
   d.place = place;
-  d.help = "`" + std::string(key.info.name) + "`: " + std::string(key.info.description);
+  d.help = "give a number of that range; " + meaning(key.info);
   return d;
 }
 
@@ -133,10 +137,11 @@ Diagnostic unknown_key(std::span<const Key> keys, std::string_view name, std::st
                        SourcePlace place) {
   Diagnostic d;
   d.code = "C012";
-  d.message = "unknown key `" + std::string(name) + "` in " + std::string(subject);
+  d.message = "unknown key `" + shortened(name) + "` in " + std::string(subject);
   d.place = std::move(place);
   const std::string near = nearest_key(keys, name);
   if (!near.empty()) d.hint = "did you mean `" + near + "`?";
+  d.help = "take a key that it has, or leave this one out";
   return d;
 }
 
@@ -151,6 +156,19 @@ SourcePlace command_line_place(const Assignment& assignment, bool at_value) {
   return place;
 }
 
+std::optional<TomlValue> value_of_assignment(const Assignment& assignment,
+                                             std::vector<Diagnostic>& problems) {
+  try {
+    return parse_toml_value(assignment.value);
+  } catch (const InputError& error) {
+    for (Diagnostic d : error.diagnostics()) {
+      d.place = command_line_place(assignment, true);
+      problems.push_back(std::move(d));
+    }
+  }
+  return std::nullopt;
+}
+
 void apply_settings(std::string_view group, std::span<const Key> keys, std::span<const Assignment> sets,
                     std::vector<Diagnostic>& problems) {
   for (const Assignment& set : sets) {
@@ -158,6 +176,10 @@ void apply_settings(std::string_view group, std::span<const Key> keys, std::span
     const std::string name =
         set.path.size() > group.size() ? set.path.substr(group.size() + 1) : std::string();
     const Key* key = find_key(keys, name);
+    if (!key && problems.size() >= kProblemsShown) {  // counted; nobody reads it
+      problems.emplace_back();
+      continue;
+    }
     if (!key) {
       Diagnostic d =
           unknown_key(keys, name, "group `" + std::string(group) + "`", command_line_place(set, false));
@@ -165,11 +187,8 @@ void apply_settings(std::string_view group, std::span<const Key> keys, std::span
       problems.push_back(std::move(d));
       continue;
     }
-    try {
-      assign(*key, parse_toml_value(set.value), command_line_place(set, true), problems);
-    } catch (const InputError& error) {
-      problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
-    }
+    if (const auto value = value_of_assignment(set, problems))
+      assign(*key, *value, command_line_place(set, true), problems);
   }
 }
 
@@ -181,8 +200,7 @@ void check_groups(std::span<const Assignment> sets, std::span<const std::string>
     d.code = "C020";
     d.message = "unknown group `" + set.group() + "` in `--set " + set.path + "`";
     d.place = command_line_place(set, false);
-    const std::string near = nearest_name(set.group(), groups);
-    if (!near.empty()) d.hint = "did you mean `" + near + "`?";
+    d.hint = did_you_mean(set.group(), groups);
     d.help = "the groups are";
     for (const std::string& group : groups) d.help += " " + group;
     problems.push_back(std::move(d));

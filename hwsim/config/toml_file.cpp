@@ -8,15 +8,20 @@
 #include <sstream>
 #include <utility>
 
+#include "hwsim/config/toml_nesting.h"
+
 namespace hwsim {
 namespace {
+
+constexpr std::uintmax_t kFileBytesMax = std::uintmax_t{4} << 20;
+constexpr std::size_t kLineShown = 240;  // of a line, with every value that it holds
 
 std::vector<std::string> split_lines(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) {
     if (line.ends_with('\r')) line.pop_back();
-    lines.push_back(line);
+    lines.emplace_back(whole_characters(line, 0, kLineShown));
   }
   return lines;
 }
@@ -45,9 +50,17 @@ class Flattener {
     p.column = static_cast<int>(region.begin.column);
     if (region.end.line == region.begin.line && region.end.column > region.begin.column)
       p.length = static_cast<int>(region.end.column - region.begin.column);
-    if (p.line >= 1 && static_cast<std::size_t>(p.line) <= lines_.size())
+    const bool shown = p.column <= static_cast<int>(kLineShown);
+    if (shown && p.line >= 1 && static_cast<std::size_t>(p.line) <= lines_.size())
       p.line_text = lines_[static_cast<std::size_t>(p.line) - 1];
     return p;
+  }
+
+  SourcePlace place(int line, int column) const {
+    toml::source_region region;
+    region.begin =
+        region.end = {static_cast<toml::source_index>(line), static_cast<toml::source_index>(column)};
+    return place(region);
   }
 
   /// toml++ keeps tables sorted by key; messages and `show` follow the file.
@@ -118,7 +131,8 @@ class Flattener {
     problems_.push_back(
         {.code = "C022",
          .message = "the interval of `" + entry.path + "` must be two numbers [low, high], low <= high",
-         .place = place(node.source())});
+         .place = place(node.source()),
+         .help = "write interval = [LOW, HIGH] around the value, or leave it out"});
   }
 
   void complain(const std::string& path, const std::string& field, SourcePlace where) {
@@ -129,8 +143,7 @@ class Flattener {
     d.place = std::move(where);
     d.message = known ? "`" + field + "` of `" + path + "` must be a text"
                       : "unknown field `" + field + "` in the table of `" + path + "`";
-    const std::string near = known ? "" : nearest_name(field, kFields);
-    if (!near.empty()) d.hint = "did you mean `" + near + "`?";
+    if (!known) d.hint = did_you_mean(field, kFields);
     d.help = "the fields are value, provenance, source and interval";
     problems_.push_back(std::move(d));
   }
@@ -141,9 +154,11 @@ class Flattener {
   std::vector<TomlEntry> entries_;
 };
 
+/// None where it cannot be read, or is larger than any setting needs.
 std::optional<std::string> read_text(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
+  if (std::filesystem::file_size(path, error) > kFileBytesMax) return std::nullopt;
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();
@@ -159,10 +174,18 @@ TomlFile read_toml_file(const std::string& path, std::vector<Diagnostic>& proble
   if (!text) {
     problems.push_back({.code = "C010",
                         .message = "cannot read the file `" + path + "`",
-                        .help = "check that it exists, is a file and may be read"});
+                        .place = {.file = path},
+                        .help = "check that it exists, is a file of at most 4 MiB and may be read"});
     return file;
   }
   Flattener flattener(path, *text, problems);
+  if (const auto deep = too_deep(*text)) {
+    problems.push_back({.code = "C011",
+                        .message = deep->what,
+                        .place = flattener.place(deep->line, deep->column),
+                        .help = "write flatter keys and values: settings need two levels"});
+    return file;
+  }
   try {
     const toml::table table = toml::parse(*text);
     flattener.flatten(table, "");
@@ -170,7 +193,8 @@ TomlFile read_toml_file(const std::string& path, std::vector<Diagnostic>& proble
   } catch (const toml::parse_error& error) {
     problems.push_back({.code = "C011",
                         .message = "not TOML: " + std::string(error.description()),
-                        .place = flattener.place(error.source())});
+                        .place = flattener.place(error.source()),
+                        .help = "a line is key = value, with texts in quotes; mend what stands at the mark"});
   }
   return file;
 }

@@ -7,12 +7,13 @@
 #include <optional>
 
 #include "hwsim/base/diagnostics.h"
+#include "hwsim/config/toml_nesting.h"
 
 namespace hwsim {
 namespace {
 
 [[noreturn]] void fail_value(std::string_view text, std::string reason, std::string help) {
-  Diagnostic d{.code = "C021", .message = "`" + std::string(text) + "` is no value: " + std::move(reason)};
+  Diagnostic d{.code = "C021", .message = "`" + shortened(text) + "` is no value: " + std::move(reason)};
   d.help = std::move(help);
   throw InputError(std::move(d));
 }
@@ -60,6 +61,9 @@ TomlValue parse_toml_value(std::string_view text) {
   if (has_control_character(text)) fail_value("...", "it holds a control character", "escape it in quotes");
   // A '#' would start a comment; in a bare string ("#ff0000") it is part of the text.
   if (!looks_quoted_or_nested(text) && text.find('#') != std::string_view::npos) return std::string(text);
+  if (looks_quoted_or_nested(text) && too_deep(text))
+    fail_value(text, "arrays, tables and dates are not taken here", "give one boolean, number or text");
+  if (too_deep(text)) return std::string(text);
   try {
     const toml::table table = toml::parse("v = " + std::string(text));
     if (table.size() == 1)

@@ -79,7 +79,8 @@ void describe_texture(V& v, GpuValues<T>& c) {
         c.tex_128bit_ratio);
   v.key({"tex_efficiency_ratio", kRatioLow, 1, kFit | kFaster, "of the probe rate, reached"},
         c.tex_efficiency_ratio);
-  v.key({"tex_latency_cycles", 0, 1e5, kSlower, "core clocks of a texture request that hits in L1; part of the latencies below"},
+  v.key({"tex_latency_cycles", 0, 1e5, kSlower,
+         "core clocks of a texture request that hits in L1; part of the latencies below"},
         c.tex_latency_cycles);
   v.key({"l1_size_kib", 0.25, kKibHigh, kFaster, "texture cache of a core"}, c.l1_size_kib);
   v.key({"l1_ways", 1, 128, kNeither, "engine detailed: lines of a set of L1"}, c.l1_ways);

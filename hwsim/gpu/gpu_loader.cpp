@@ -17,6 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kChainMax = 16;    // files from a GPU to the one that stands alone
+constexpr std::size_t kIdBytesMax = 64;  // ids become names of folders and columns
 constexpr std::string_view kSchemaHelp = "`hwsim config schema gpu` lists the keys";
 
 struct Resolved {
@@ -32,6 +34,13 @@ struct Header {
 
 bool is_path(const std::string& id_or_path) {
   return id_or_path.ends_with(".toml") || id_or_path.find('/') != std::string::npos;
+}
+
+/// What can name a folder: no slashes, no control characters, not too long.
+bool is_name(const std::string& id) {
+  const auto printable = [](char c) { return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f; };
+  return !id.empty() && id.size() <= kIdBytesMax && id.find_first_of("/\\") == std::string::npos &&
+         std::all_of(id.begin(), id.end(), printable) && id != "." && id != "..";
 }
 
 std::optional<Provenance> provenance_from_name(std::string_view name) {
@@ -62,12 +71,8 @@ class Loader {
     resolved.entry.key_place = command_line_place(assignment, false);
     resolved.entry.value_place = command_line_place(assignment, true);
     resolved.origin.layer = Origin::Layer::command_line;
-    try {
-      resolved.entry.value = parse_toml_value(assignment.value);
-    } catch (const InputError& error) {
-      problems_.insert(problems_.end(), error.diagnostics().begin(), error.diagnostics().end());
-      return;
-    }
+    resolved.entry.value = value_of_assignment(assignment, problems_);
+    if (!resolved.entry.value) return;
     add(std::move(resolved), "gpu \"" + config_.id + "\"");
   }
 
@@ -75,6 +80,7 @@ class Loader {
     if (!base_missing_)
       for (const Key& key : keys_) settle(key);
     if (problems_.empty()) check_rules(config_, problems_);
+    keep_first(problems_);
     if (!problems_.empty()) throw InputError(std::move(problems_));
     return std::move(config_);
   }
@@ -100,17 +106,19 @@ class Loader {
     if (!parent) return;
     std::error_code error;
     const std::string identity = fs::weakly_canonical(*parent, error).string();
-    if (std::find(chain.begin(), chain.end(), identity) == chain.end()) {
+    const bool circle = std::find(chain.begin(), chain.end(), identity) != chain.end();
+    if (!circle && chain.size() < kChainMax) {
       file_with_parents(*parent, Origin::Layer::parent, chain);
       return;
     }
     Diagnostic d;
     d.code = "C017";
-    d.message = "`extends` goes in a circle";
+    d.message = circle ? "`extends` goes in a circle"
+                       : "more than " + std::to_string(kChainMax) + " files extend each other";
     d.place = header.extends_place;
-    for (const std::string& link : chain) d.notes.push_back(link);
-    d.notes.push_back(identity + " again");
-    d.help = "one file of the chain must stand alone";
+    if (circle) d.notes = chain;
+    d.notes.push_back(identity + (circle ? " again" : " would be the next"));
+    d.help = circle ? "one file of the chain must stand alone" : "write the values of several files into one";
     problems_.push_back(std::move(d));
     base_missing_ = true;
   }
@@ -141,7 +149,10 @@ class Loader {
       } else if (entry.path == "about" && kind == "overlay") {
         if (!text) complain_header("`about` must be a text", entry.value_place);
       } else if (entry.path == "id" || entry.path == "extends") {
-        if (!text || text->empty()) complain_header("`" + entry.path + "` must be a text", entry.value_place);
+        if (!text || text->empty())
+          complain_header("`" + entry.path + "` must be a text", entry.value_place);
+        else if (entry.path == "id" && !is_name(*text))
+          complain_header("`id` must be of 1 to 64 printable characters, without slashes", entry.value_place);
         if (text) (entry.path == "id" ? header.id : header.extends) = *text;
         if (entry.path == "extends") header.extends_place = entry.value_place;
       } else {
@@ -196,8 +207,7 @@ class Loader {
     d.message = is_path(name) ? "cannot read the file `" + name + "`" : "unknown GPU \"" + name + "\"";
     d.place = std::move(place);
     const std::vector<std::string> gpus = list_gpus(config_dir_);
-    const std::string near = nearest_name(fs::path(name).stem().string(), gpus);
-    if (!near.empty()) d.hint = "did you mean `" + near + "`?";
+    d.hint = did_you_mean(fs::path(name).stem().string(), gpus);
     std::string known;
     for (const std::string& gpu : gpus) known += " " + gpu;
     d.notes.push_back(gpus.empty() ? "there are no GPU files in `" + config_dir_ + "`" : "known:" + known);
@@ -226,8 +236,7 @@ class Loader {
     d.code = "C022";
     d.message = "unknown provenance \"" + entry.provenance + "\" of `" + entry.path + "`";
     d.place = entry.provenance_place;
-    const std::string near = nearest_name(entry.provenance, kNames);
-    if (!near.empty()) d.hint = "did you mean `" + near + "`?";
+    d.hint = did_you_mean(entry.provenance, kNames);
     d.help = "it is one of published, measured, fitted, derived, assumed";
     problems_.push_back(std::move(d));
     return std::nullopt;
@@ -236,6 +245,10 @@ class Loader {
   void add(Resolved resolved, const std::string& subject) {
     const std::string name = resolved.entry.path;
     const Key* key = find_key(keys_, name);
+    if (!key && problems_.size() >= kProblemsShown) {
+      problems_.emplace_back();  // counted; nobody reads it
+      return;
+    }
     if (!key) {
       Diagnostic d = unknown_key(keys_, name, subject, resolved.entry.key_place);
       const auto inherited = resolved_.find(nearest_key(keys_, name));
@@ -289,7 +302,8 @@ class Loader {
     d.message = "missing key `" + std::string(key.info.name) + "` in gpu \"" + config_.id + "\"";
     d.place.file = base_path_;
     d.notes.push_back(std::string(key.info.name) + ": " + std::string(key.info.description));
-    d.help = kSchemaHelp;
+    d.help = "add `" + std::string(key.info.name) + " = ...`, or extend a GPU that has it; " +
+             std::string(kSchemaHelp);
     problems_.push_back(std::move(d));
   }
 
@@ -302,6 +316,7 @@ class Loader {
     d.message = "`" + entry.path + "` is " + to_toml(**number) + ", outside its own interval [" +
                 to_toml((*origin.interval)[0]) + ", " + to_toml((*origin.interval)[1]) + "]";
     d.place = entry.value_place;
+    d.help = "widen the interval, or leave it out";
     problems_.push_back(std::move(d));
   }
 

@@ -21,6 +21,8 @@ class RuleCheck {
     Diagnostic d;
     d.code = "C018";
     d.message = std::move(message);
+    d.place = place_of(keys.front());
+    d.help = "change one of them";
     for (const std::string& key : keys) {
       const auto origin = config_.origins.find(key);
       const std::string from = origin == config_.origins.end() ? "" : " (" + origin->second.to_string() + ")";
@@ -30,6 +32,16 @@ class RuleCheck {
   }
 
  private:
+  /// The file and line that gave the first key, where one did.
+  SourcePlace place_of(const std::string& key) const {
+    SourcePlace place;
+    const auto origin = config_.origins.find(key);
+    if (origin == config_.origins.end()) return place;
+    place.file = origin->second.layer == Origin::Layer::command_line ? "(command line)" : origin->second.file;
+    place.line = origin->second.line;
+    return place;
+  }
+
   const GpuConfig& config_;
   std::vector<Diagnostic>& problems_;
 };

@@ -231,8 +231,11 @@ std::string gpu_schema_json() {
 
 std::span<const ConfigCode> config_codes() {
   static constexpr ConfigCode kCodes[] = {
-      {"C010", "file cannot be read", "The path does not exist, is not a file, or may not be read."},
-      {"C011", "not TOML", "The file breaks the syntax of TOML 1.0; the mark stands where reading stopped."},
+      {"C010", "file cannot be read",
+       "The path does not exist, is not a file, is larger than 4 MiB, or may not be read."},
+      {"C011", "not TOML",
+       "The file breaks the syntax of TOML 1.0, or nests more than 16 levels; the mark stands where reading "
+       "stopped."},
       {"C012", "unknown key",
        "No key has this name. A misspelled key would silently change nothing, so it is an error."},
       {"C013", "wrong type",
@@ -241,7 +244,8 @@ std::span<const ConfigCode> config_codes() {
       {"C015", "missing key",
        "The key has no default: a GPU file, or the file that it extends, must give it."},
       {"C016", "unknown GPU", "No file of the GPU folder has this name."},
-      {"C017", "circle of extends", "A file extends itself, directly or through others."},
+      {"C017", "extends without an end",
+       "A file extends itself, directly or through others, or more than 16 files extend each other."},
       {"C018", "keys contradict each other",
        "Each value is allowed, but not together; the notes name every key."},
       {"C019", "wrong kind of file",
