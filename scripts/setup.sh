@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Installs the packages of Debian 12 that the build needs and that are missing. Does nothing when all are there.
+# --checks: also what the gate's checks need (clang, its sanitizers, clang-format).
 set -euo pipefail
 
 packages=(
@@ -9,6 +10,7 @@ packages=(
   libbenchmark-dev libgtest-dev
   libegl-dev libgl-dev libopengl-dev libegl-mesa0 libgl1-mesa-dri # llvmpipe: the rasterizer's oracle
 )
+[ "${1:-}" = --checks ] && packages+=(clang libclang-rt-14-dev clang-format)
 
 installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 
