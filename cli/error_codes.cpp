@@ -154,6 +154,16 @@ constexpr ErrorCode kCodes[] = {
      "The derivatives of one GPU are computed side by side, 12 at a time."},
     {"M005", "too many parameters", "The fit takes at most one parameter for four fitted values."},
     {"M006", "damaged calibration", "calibration.json must be as `hwsim fit` wrote it."},
+    {"M007", "statement about accuracy",
+     "A line of configs/calibration/accuracy.csv says in which range a figure of `hwsim validate` lies: "
+     "papers, split, "
+     "figure, low, high."},
+    {"M008", "no trace is kept of a run",
+     "tests/data/published.traces holds the work traces of every published run. scripts/keep_traces.sh "
+     "writes it."},
+    {"M009", "optimum of a fold",
+     "tests/data/fold_optima.csv holds where each fit of a validation ended. scripts/keep_traces.sh writes "
+     "it."},
 
     {"I001", "image module not found",
      "Images are read and written by libhwsim_image_io.so, which lies beside the program's libraries and "

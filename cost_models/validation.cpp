@@ -97,10 +97,12 @@ std::vector<HeldOut> predict_marked(const Experiment& experiment, const Fit& fit
 
 class Validator {
  public:
-  Validator(const Experiment& experiment, const FitOptions& options, const StepProgress& progress)
+  Validator(const Experiment& experiment, const FitOptions& options, const StepProgress& progress,
+            const std::vector<FoldOptimum>& known)
       : experiment_(experiment),
         options_(options),
         progress_(progress),
+        known_(known),
         all_(fitted_cells(experiment)),
         work_(simple_work(experiment)) {}
 
@@ -108,14 +110,18 @@ class Validator {
     plan();
     Validation validation;
     step("all cells");
-    validation.fit = fit(experiment_, all_, Predictor(experiment_, 1).start(), options_);
-    optimum_ = validation.fit.log_values;
     refit_ = options_;
     refit_.starts = 1;
     refit_.convex_first = false;  // they begin at an optimum
     refit_.progress = nullptr;
+    const std::vector<double>* known = known_optimum(Split::in_sample, "");
+    validation.fit = known ? fit(experiment_, all_, *known, refit_)
+                           : fit(experiment_, all_, Predictor(experiment_, 1).start(), options_);
+    optimum_ = validation.fit.log_values;
+    optima_ = {{Split::in_sample, "", optimum_}};
     for (int s = 0; s < kSplitCount; ++s)
       validation.splits.push_back(split(static_cast<Split>(s), validation.fit));
+    validation.optima = std::move(optima_);
     by_label(validation);
     count(validation);
     progress_(steps_, steps_, "");
@@ -131,6 +137,11 @@ class Validator {
       different.erase("");
       steps_ += different.size();
     }
+  }
+  const std::vector<double>* known_optimum(Split split, const std::string& fold) const {
+    for (const FoldOptimum& k : known_)
+      if (k.split == split && k.fold == fold) return &k.log_values;
+    return nullptr;
   }
   void step(const std::string& what) { progress_(done_++, steps_, what); }
 
@@ -159,16 +170,21 @@ class Validator {
     for (std::size_t i = 0; i < all_.size(); ++i)
       if (names[i] == fold) train[i] = false, test[i] = true;
     step(std::string(split_name(split)) + ": " + fold);
-    // Parameters that lose all their data must forget what the full fit knew.
-    std::vector<double> start = optimum_;
-    const std::vector<bool> used = used_parameters(experiment_, train);
-    const std::vector<double> declared = Predictor(experiment_, 1).start();
-    for (std::size_t k = 0; k < start.size(); ++k)
-      if (!used[k]) start[k] = declared[k];
-    const Fit part = fit(experiment_, train, start, refit_);
+    const Fit part = fit(experiment_, train, start_of(split, fold, train), refit_);
+    optima_.push_back({split, fold, part.log_values});
     const std::vector<HeldOut> cells = predict_marked(experiment_, part, test, fold, options_.jobs);
     result.cells.insert(result.cells.end(), cells.begin(), cells.end());
     add_baselines(train, test, cells, baselines);
+  }
+
+  std::vector<double> start_of(Split split, const std::string& fold, const std::vector<bool>& train) const {
+    const std::vector<double>* known = known_optimum(split, fold);
+    std::vector<double> start = known ? *known : optimum_;
+    // Parameters that lose all their data must forget what the full fit knew.
+    const std::vector<bool> used = used_parameters(experiment_, train);
+    for (std::size_t k = 0; k < start.size(); ++k)
+      if (!used[k]) start[k] = std::log(experiment_.parameters[k].start);
+    return start;
   }
 
   void add_baselines(const std::vector<bool>& train, const std::vector<bool>& test,
@@ -215,6 +231,8 @@ class Validator {
   const FitOptions& options_;
   FitOptions refit_;
   const StepProgress& progress_;
+  const std::vector<FoldOptimum>& known_;
+  std::vector<FoldOptimum> optima_;
   std::vector<bool> all_;
   std::vector<SimpleWork> work_;
   std::vector<double> optimum_;
@@ -239,8 +257,9 @@ std::string_view split_name(Split split) {
   return "in_sample";
 }
 
-Validation validate(const Experiment& experiment, const FitOptions& options, const StepProgress& progress) {
-  return Validator(experiment, options, progress).run();
+Validation validate(const Experiment& experiment, const FitOptions& options, const StepProgress& progress,
+                    const std::vector<FoldOptimum>& known) {
+  return Validator(experiment, options, progress, known).run();
 }
 
 std::vector<HeldOut> predict_cells(const Experiment& experiment, const Fit& fit, double quantile90,

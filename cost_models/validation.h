@@ -44,16 +44,27 @@ struct SplitResult {
   std::map<std::string, Figures> baselines;  ///< mean, bytes_over_bandwidth, linear_regression
 };
 
+/// Where the fit without a fold ended: the logarithms of the experiment's parameters. Split::in_sample has
+/// one, with an empty fold: the fit to all cells.
+struct FoldOptimum {
+  Split split = Split::in_sample;
+  std::string fold;
+  std::vector<double> log_values;
+};
+
 struct Validation {
-  Fit fit;  ///< to all cells
+  Fit fit;                          ///< to all cells
+  std::vector<FoldOptimum> optima;  ///< of every fit
   std::vector<SplitResult> splits;
   std::map<std::string, Figures> papers, gpus;  ///< in sample
   double shaded_samples_mape_pct = 0.0, memory_worst_pct = 0.0;
   std::size_t shaded_samples_cells = 0, memory_cells = 0;
 };
 
-/// Fits to all, then to each complement of a fold, from the optimum of all.
-Validation validate(const Experiment& experiment, const FitOptions& options, const StepProgress& progress);
+/// Fits to all, then to each complement of a fold, from the optimum of all. A fit whose optimum is in `known`
+/// begins there: it ends within the solver's tolerance of it, after two evaluations in place of dozens.
+Validation validate(const Experiment& experiment, const FitOptions& options, const StepProgress& progress,
+                    const std::vector<FoldOptimum>& known = {});
 
 /// Predictions of every cell that a replay predicts, derived rows included, by one fit; intervals with the
 /// given quantile.
