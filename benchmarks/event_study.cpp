@@ -15,9 +15,9 @@
 
 #include "algos/techniques.h"
 #include "hwsim/gpu/every_feature.h"
+#include "pipeline/batch/fragment_batch.h"
 #include "pipeline/emulate/emulator.h"
-#include "pipeline/emulate/fragment_batch.h"
-#include "pipeline/emulate/gpu_image.h"
+#include "pipeline/memory/gpu_image.h"
 #include "study_input.h"
 
 namespace hwsim::benchmarks {

@@ -1,5 +1,5 @@
 #pragma once
-#include "pipeline/shade/program.h"
+#include "pipeline/batch/program.h"
 
 namespace hwsim::benchmarks {
 

@@ -22,9 +22,9 @@
 #include "hwsim/gpu/every_feature.h"
 #include "pipeline/base/file_io.h"
 #include "pipeline/emulate/emulator.h"
+#include "pipeline/generate/registry.h"
 #include "pipeline/image/metrics.h"
 #include "pipeline/image/srgb_codes.h"
-#include "pipeline/scene/generate/registry.h"
 #include "study_input.h"
 
 namespace hwsim::benchmarks {

@@ -11,7 +11,7 @@
 
 #include "benchmarks/pass_programs.h"
 #include "pipeline/emulate/emulator.h"
-#include "pipeline/scene/scene_source.h"
+#include "pipeline/open/scene_source.h"
 #include "pipeline/shade/mesh_vertex.h"
 #ifdef HWSIM_HAVE_LLVMPIPE
 #include "oracle/llvmpipe.h"

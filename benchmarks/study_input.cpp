@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "algos/techniques.h"
-#include "pipeline/scene/scene_source.h"
+#include "pipeline/open/scene_source.h"
 
 namespace hwsim::benchmarks {
 

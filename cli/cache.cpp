@@ -12,7 +12,7 @@
 #include "cli/table.h"
 #include "hwsim/base/content_hash.h"
 #include "pipeline/base/file_io.h"
-#include "pipeline/scene/scene_source.h"
+#include "pipeline/open/scene_source.h"
 
 namespace hwsim::cli {
 namespace {

@@ -10,7 +10,7 @@
 #include "hwsim/base/csv.h"
 #include "hwsim/gpu/gpu_config.h"
 #include "hwsim/trace/counters.h"
-#include "pipeline/scene/scene_source.h"
+#include "pipeline/open/scene_source.h"
 
 namespace hwsim::cli {
 namespace {

@@ -5,8 +5,8 @@
 #include "cli/cache.h"
 #include "cli/commands.h"
 #include "cli/table.h"
-#include "pipeline/scene/scene_check.h"
-#include "pipeline/scene/scene_source.h"
+#include "pipeline/open/scene_check.h"
+#include "pipeline/open/scene_source.h"
 
 namespace hwsim::cli {
 namespace {

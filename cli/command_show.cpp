@@ -8,7 +8,7 @@
 #include "cli/files.h"
 #include "cli/gpu_view.h"
 #include "cli/messages.h"
-#include "pipeline/scene/scene_source.h"
+#include "pipeline/open/scene_source.h"
 
 namespace hwsim::cli {
 namespace {

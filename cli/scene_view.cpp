@@ -13,7 +13,7 @@
 #include "cli/image_input.h"
 #include "cli/messages.h"
 #include "hwsim/base/byte_codec.h"
-#include "pipeline/scene/scene_source.h"
+#include "pipeline/open/scene_source.h"
 
 namespace hwsim::cli {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "algos/base/shaders/forward.h"
 #include "algos/base/technique.h"
-#include "pipeline/raster/sample_pattern.h"
+#include "pipeline/state/sample_pattern.h"
 
 namespace hwsim::algos {
 

@@ -6,8 +6,8 @@
 #include "algos/base/frame_parts.h"
 #include "algos/base/shaders/deferred.h"
 #include "algos/base/shaders/post.h"
-#include "pipeline/raster/sample_pattern.h"
 #include "pipeline/shade/mesh_vertex.h"
+#include "pipeline/state/sample_pattern.h"
 
 namespace hwsim::algos {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "algos/base/frame_parts.h"
 #include "algos/base/shaders/post.h"
-#include "pipeline/raster/sample_pattern.h"
+#include "pipeline/state/sample_pattern.h"
 
 namespace hwsim::algos {
 namespace {

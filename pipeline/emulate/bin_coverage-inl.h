@@ -1,8 +1,8 @@
-// Coverage maps of a screen bin (emulate/coverage_map.h). Per-target include guard.
-#include "pipeline/depth/depth_expand.h"
+// Coverage maps of a screen bin (memory/coverage_map.h). Per-target include guard.
 #include "pipeline/emulate/bin_depth-inl.h"
-#include "pipeline/emulate/coverage_map.h"
 #include "pipeline/graph/frame_graph.h"
+#include "pipeline/memory/coverage_map.h"
+#include "pipeline/memory/depth_expand.h"
 
 #if defined(HWSIM_EMULATE_BIN_COVERAGE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_EMULATE_BIN_COVERAGE_INL_H_

@@ -3,12 +3,12 @@
 
 #include <cstring>
 
-#include "pipeline/depth/depth_planes-inl.h"
-#include "pipeline/depth/depth_tile-inl.h"
-#include "pipeline/depth/stencil.h"
 #include "pipeline/emulate/depth_traffic.h"
 #include "pipeline/emulate/fragment_setup-inl.h"
 #include "pipeline/emulate/pass_context.h"
+#include "pipeline/memory/depth_planes-inl.h"
+#include "pipeline/memory/depth_tile-inl.h"
+#include "pipeline/memory/stencil.h"
 
 #if defined(HWSIM_EMULATE_BIN_DEPTH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_EMULATE_BIN_DEPTH_INL_H_

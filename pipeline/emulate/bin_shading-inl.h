@@ -1,4 +1,5 @@
 // Fragment shading of a screen bin. Per-target include guard.
+#include "pipeline/batch/accounting.h"
 #include "pipeline/emulate/bin_color-inl.h"
 #include "pipeline/emulate/coverage_output-inl.h"
 

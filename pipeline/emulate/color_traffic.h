@@ -5,7 +5,7 @@
 #include <span>
 
 #include "hwsim/trace/counters.h"
-#include "pipeline/emulate/gpu_image.h"
+#include "pipeline/memory/gpu_image.h"
 
 namespace hwsim::pipeline {
 

@@ -2,9 +2,11 @@
 #include <cstring>
 #include "pipeline/emulate/fragment_setup-inl.h"
 #include "pipeline/emulate/pass_context.h"
+#include "pipeline/image/image.h"
+#include "pipeline/memory/stale_samples-inl.h"
 
-#include "pipeline/shade/codec-inl.h"
-#include "pipeline/shade/lanes-inl.h"
+#include "pipeline/simd/codec-inl.h"
+#include "pipeline/simd/lanes-inl.h"
 
 #if defined(HWSIM_EMULATE_COLOR_WRITE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_EMULATE_COLOR_WRITE_INL_H_
@@ -123,20 +125,6 @@ inline void store_tile(GpuImage& image, int block, int sample, std::uint64_t mas
       if ((mask >> first & kRegisterBits) != 0)
         hn::BlendedStore(load(texels.words[w] + first).v, hn::RebindMask(DI(), mask_from_bits(mask, first).v),
                          DI(), to + first);
-  }
-}
-
-/// Copies sample 0 of `lanes` to the other samples.
-inline void spread_lanes(GpuImage& image, int block, std::uint64_t lanes) {
-  auto* texels = reinterpret_cast<std::int32_t*>(image.block(block));
-  for (int first = 0; first < kBlockLanes; first += kVectorLanes) {
-    if ((lanes >> first & kRegisterBits) == 0) continue;
-    const auto mask = hn::RebindMask(DI(), mask_from_bits(lanes, first).v);
-    for (int w = 0; w < image.words; ++w) {
-      const LaneI color = load(texels + w * kBlockLanes + first);
-      for (int s = 1; s < image.samples; ++s)
-        hn::BlendedStore(color.v, mask, DI(), texels + (s * image.words + w) * kBlockLanes + first);
-    }
   }
 }
 

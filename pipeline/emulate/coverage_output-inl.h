@@ -2,7 +2,7 @@
 // Per-target include guard.
 #include "pipeline/emulate/pass_context.h"
 #include "pipeline/raster/coverage-inl.h"
-#include "pipeline/shade/lanes-inl.h"
+#include "pipeline/simd/lanes-inl.h"
 
 #if defined(HWSIM_EMULATE_COVERAGE_OUTPUT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_EMULATE_COVERAGE_OUTPUT_INL_H_

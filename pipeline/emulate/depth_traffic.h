@@ -4,7 +4,7 @@
 #include <span>
 
 #include "hwsim/trace/counters.h"
-#include "pipeline/depth/depth_expand.h"
+#include "pipeline/memory/depth_expand.h"
 
 namespace hwsim::pipeline {
 

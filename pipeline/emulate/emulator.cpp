@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "pipeline/base/parallel.h"
-#include "pipeline/depth/depth_format.h"
 #include "pipeline/emulate/color_traffic.h"
 #include "pipeline/emulate/depth_traffic.h"
 #include "pipeline/emulate/frame_memory.h"
@@ -16,6 +15,7 @@
 #include "pipeline/emulate/pass_description.h"
 #include "pipeline/emulate/pass_reuse.h"
 #include "pipeline/emulate/transfer.h"
+#include "pipeline/memory/depth_format.h"
 
 namespace hwsim::pipeline {
 namespace {

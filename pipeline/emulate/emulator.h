@@ -46,7 +46,7 @@ inline constexpr std::array<SkipInfo, 6> kSkips = {{
      &SkipSwitches::single_color_pixels},
 }};
 
-struct GpuImage;  // emulate/gpu_image.h
+struct GpuImage;  // memory/gpu_image.h
 
 struct EmulationOptions {
   int jobs = 1;

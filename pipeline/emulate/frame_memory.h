@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "pipeline/emulate/gpu_image.h"
 #include "pipeline/graph/frame_graph.h"
+#include "pipeline/memory/gpu_image.h"
 
 namespace hwsim::pipeline {
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "pipeline/batch/accounting.h"
+
 namespace hwsim::pipeline {
 namespace {
 

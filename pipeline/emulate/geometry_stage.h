@@ -2,7 +2,7 @@
 // The geometry shader: runs on assembled triangles, hands what it emits to set-up.
 #include <span>
 
-#include "pipeline/emulate/geometry_batch.h"
+#include "pipeline/batch/geometry_batch.h"
 #include "pipeline/emulate/primitive_setup.h"
 
 namespace hwsim::pipeline {

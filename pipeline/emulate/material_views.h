@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "pipeline/emulate/segment.h"
-#include "pipeline/shade/texture_view.h"
+#include "pipeline/texture/texture_view.h"
 
 namespace hwsim::pipeline {
 

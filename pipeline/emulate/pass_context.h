@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/batch/geometry_batch.h"
 #include "pipeline/emulate/emulator.h"
-#include "pipeline/emulate/geometry_batch.h"
 #include "pipeline/emulate/segment.h"
 #include "pipeline/raster/clip.h"
 
@@ -14,7 +14,7 @@ namespace hwsim::pipeline {
 struct PassContext {
   const Pass* pass = nullptr;
   GpuImage* depth = nullptr;
-  float depth_scale = 0.0f;  ///< see depth/depth_format.h
+  float depth_scale = 0.0f;  ///< see memory/depth_format.h
   int depth_bytes = 0;       ///< of a sample, for byte counts
   std::vector<GpuImage*> color;
   int width = 0, height = 0, samples = 1;
@@ -88,15 +88,6 @@ void run_full_screen_bin(const PassContext& context, int bin, BinWorker& worker)
 bool tests_late(const PipelineState& state, const FragmentProgram* program);
 /// Of those that are: whether a first test, without writes, comes before the shader.
 bool rejects_early(const PipelineState& state, const FragmentProgram* program);
-
-/// Charges unfiltered texels.
-void charge_texels(const TexelCounts& texels, PassCounters& counters);
-
-/// Charges the batch's invocations and their blocks' operations.
-void account_shading(const FragmentBatch& batch, const FragmentProgram& program, bool sample_rate,
-                     PassCounters& counters);
-void account_blocks(const BlockTrips& blocks, const BlockOps& ops, int block_count, std::uint64_t valid_lanes,
-                    PassCounters& counters);
 
 /// Counts the use of a tile: once a chunk, and once a pass.
 template <class UnitCounters>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hwsim/trace/counters.h"
-#include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/batch/fragment_batch.h"
 #include "pipeline/graph/frame_graph.h"
 
 namespace hwsim::pipeline {

@@ -5,29 +5,22 @@
 #include <numeric>
 
 #include "pipeline/base/parallel.h"
-#include "pipeline/depth/depth_format.h"
 #include "pipeline/emulate/color_traffic.h"
-#include "pipeline/emulate/coverage_map.h"
 #include "pipeline/graph/frame_graph.h"
-#include "pipeline/shade/texture_view.h"
+#include "pipeline/memory/coverage_map.h"
+#include "pipeline/memory/depth_format.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pipeline/emulate/transfer.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include "pipeline/emulate/color_write-inl.h"
-#include "pipeline/shade/codec-inl.h"
-#include "pipeline/shade/lanes-inl.h"
-#include "pipeline/shade/scalar_lane-inl.h"
+#include "pipeline/simd/codec-inl.h"
+#include "pipeline/simd/lanes-inl.h"
+#include "pipeline/simd/scalar_lane-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
-
-void spread(GpuImage& image, int block) {
-  const auto i = static_cast<std::size_t>(block);
-  spread_lanes(image, block, image.stale_lanes[i]);
-  image.stale_lanes[i] = 0;
-}
 
 /// The sum over the samples of one register of pixels, in pairs: a power of two of equal values sums without
 /// rounding, so that pixels of one color give that color whether their samples are read or not.
@@ -45,7 +38,7 @@ HWY_INLINE Vec4<LaneF> sum_samples(const GpuImage& from, const std::int32_t* sou
   return partial[level];
 }
 
-/// Each color with the positions that name its sample (emulate/coverage_map.h).
+/// Each color with the positions that name its sample (memory/coverage_map.h).
 HWY_INLINE Vec4<LaneF> mean_of_positions(const GpuImage& from, const std::int32_t* source, int block,
                                          int first) {
   HWY_ALIGN float weight[kMaxSamples][kVectorLanes] = {};
@@ -132,7 +125,6 @@ HWY_AFTER_NAMESPACE();
 namespace hwsim::pipeline {
 HWY_EXPORT(resolve_block);
 HWY_EXPORT(resolve_depth_block);
-HWY_EXPORT(spread);
 HWY_EXPORT(decode_block);
 
 Image to_linear_image(const GpuImage& from, Format format, int jobs) {
@@ -218,10 +210,6 @@ std::uint64_t resolve_image(GpuImage& from, GpuImage& to, bool skip_single_color
     }
   });
   return std::accumulate(skipped.begin(), skipped.end(), std::uint64_t{0});
-}
-
-void spread_stale_samples(GpuImage& image, int block_index) {
-  HWY_DYNAMIC_DISPATCH(spread)(image, block_index);
 }
 
 std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* source,

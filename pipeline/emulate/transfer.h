@@ -2,9 +2,9 @@
 // Clears, copies and resolves.
 #include <vector>
 
-#include "pipeline/emulate/gpu_image.h"
 #include "pipeline/graph/frame_graph.h"
 #include "pipeline/image/image.h"
+#include "pipeline/memory/gpu_image.h"
 
 namespace hwsim::pipeline {
 

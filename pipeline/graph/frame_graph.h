@@ -12,10 +12,10 @@
 #include "hwsim/gpu/gpu_features.h"
 #include "hwsim/trace/format.h"
 #include "hwsim/trace/work_trace.h"
-#include "pipeline/graph/pipeline_state.h"
+#include "pipeline/batch/program.h"
 #include "pipeline/image/image_io.h"
 #include "pipeline/scene/scene.h"
-#include "pipeline/shade/program.h"
+#include "pipeline/state/pipeline_state.h"
 
 namespace hwsim::pipeline {
 
@@ -104,7 +104,7 @@ struct Pass {
   int samples = 1;            ///< raster samples
   int coverage_samples = 0;   ///< positions at which coverage is found, the first `samples` of which have
                               ///< depth and color (ImageDesc::coverage_samples); 0: `samples`
-  bool drop_orphans = false;  ///< see emulate/coverage_map.h
+  bool drop_orphans = false;  ///< see memory/coverage_map.h
   /// Viewport multicast (techniques 1.4): vertices are shaded once, and every primitive is rasterized into
   /// layer l of the attachments under viewport l. Empty: one viewport, and attachments of one layer.
   std::vector<ViewportShift> viewports;

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <iterator>
 
-#include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/batch/fragment_batch.h"
 #include "pipeline/graph/validate_coverage.h"
 #include "pipeline/raster/triangle.h"
 

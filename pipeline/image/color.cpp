@@ -13,4 +13,14 @@ float linear_from_srgb(float encoded) {
   return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
+const std::array<float, 256>& srgb_decode_table() {
+  static const std::array<float, 256> table = [] {
+    std::array<float, 256> values{};
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = linear_from_srgb(static_cast<float>(i) / 255.0f);
+    return values;
+  }();
+  return table;
+}
+
 }  // namespace hwsim::pipeline

@@ -1,4 +1,6 @@
 #pragma once
+// A picture in memory, and the sRGB transfer functions.
+#include <array>
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <vector>
@@ -26,5 +28,7 @@ struct Image {
 /// The sRGB transfer functions, IEC 61966-2-1.
 float srgb_from_linear(float linear);
 float linear_from_srgb(float encoded);
+/// linear_from_srgb of each 8-bit code; textures and render targets share it.
+const std::array<float, 256>& srgb_decode_table();
 
 }  // namespace hwsim::pipeline

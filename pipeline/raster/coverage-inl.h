@@ -1,9 +1,9 @@
 // Coverage of 8x8 tiles, exact: integer edge functions on vector registers. Per-target include guard.
-#include "pipeline/emulate/gpu_image.h"
-#include "pipeline/graph/pipeline_state.h"
-#include "pipeline/raster/sample_pattern.h"
+#include "pipeline/raster/tile.h"
 #include "pipeline/raster/triangle.h"
-#include "pipeline/shade/lanes-inl.h"
+#include "pipeline/simd/lanes-inl.h"
+#include "pipeline/state/pipeline_state.h"
+#include "pipeline/state/sample_pattern.h"
 
 #if defined(HWSIM_RASTER_COVERAGE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_RASTER_COVERAGE_INL_H_

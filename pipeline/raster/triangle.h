@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "pipeline/graph/pipeline_state.h"
+#include "pipeline/state/pipeline_state.h"
 
 namespace hwsim::pipeline {
 

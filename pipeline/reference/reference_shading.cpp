@@ -8,9 +8,9 @@
 
 #include "pipeline/emulate/material_views.h"
 #include "pipeline/reference/reference.h"
-#include "pipeline/shade/scalar_lane-inl.h"
 #include "pipeline/shade/surface-inl.h"
-#include "pipeline/shade/texture_sampler-inl.h"
+#include "pipeline/simd/scalar_lane-inl.h"
+#include "pipeline/texture/texture_sampler-inl.h"
 
 namespace hwsim::pipeline {
 namespace {

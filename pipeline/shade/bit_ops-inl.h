@@ -1,14 +1,14 @@
 // Bit counts, shifts by lane, and functions of angles, on every lane type. Per-target include guard, see
-// shade/lanes-inl.h.
+// simd/lanes-inl.h.
 #include "pipeline/shade/count_lane.h"
-#include "pipeline/shade/lanes-inl.h"
-#include "pipeline/shade/scalar_lane-inl.h"
+#include "pipeline/simd/lanes-inl.h"
+#include "pipeline/simd/scalar_lane-inl.h"
 
-#if defined(HWSIM_PIPELINE_SHADE_BIT_OPS_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef HWSIM_PIPELINE_SHADE_BIT_OPS_INL_H_
-#undef HWSIM_PIPELINE_SHADE_BIT_OPS_INL_H_
+#if defined(HWSIM_SHADE_BIT_OPS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_SHADE_BIT_OPS_INL_H_
+#undef HWSIM_SHADE_BIT_OPS_INL_H_
 #else
-#define HWSIM_PIPELINE_SHADE_BIT_OPS_INL_H_
+#define HWSIM_SHADE_BIT_OPS_INL_H_
 #endif
 
 HWY_BEFORE_NAMESPACE();

@@ -2,8 +2,8 @@
 // outside the buffer reads 0 and writes nothing, as robust buffer access has it. Per-target include guard.
 #include <cstring>
 
-#include "pipeline/emulate/fragment_batch.h"
-#include "pipeline/shade/lanes-inl.h"
+#include "pipeline/batch/fragment_batch.h"
+#include "pipeline/simd/lanes-inl.h"
 
 #if defined(HWSIM_SHADE_BUFFER_ACCESS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_SHADE_BUFFER_ACCESS_INL_H_

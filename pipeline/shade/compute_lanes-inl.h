@@ -1,6 +1,6 @@
 // What a compute shader sees: a wave of up to 64 invocations of a group, a vector register at a time.
-// Per-target include guard, see shade/lanes-inl.h.
-#include "pipeline/emulate/pass_context.h"
+// Per-target include guard, see simd/lanes-inl.h.
+#include "pipeline/batch/accounting.h"
 #include "pipeline/shade/fragment_lanes-inl.h"
 
 #if defined(HWSIM_SHADE_COMPUTE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)

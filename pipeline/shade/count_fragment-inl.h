@@ -1,18 +1,18 @@
 // The counting context: a fragment shader run once on it yields the operations of each of its blocks.
 // Every branch is taken and every loop body runs once; how often lanes go through is counted during
-// emulation. Per-target include guard, see shade/lanes-inl.h.
+// emulation. Per-target include guard, see simd/lanes-inl.h.
 #include <hwy/highway.h>
 #include <algorithm>
 #include <string>
-#include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/batch/fragment_batch.h"
 #include "pipeline/shade/count_lane.h"
-#include "pipeline/shade/texture_sampler-inl.h"
-#include "pipeline/shade/vec-inl.h"
-#if defined(HWSIM_PIPELINE_SHADE_COUNT_FRAGMENT_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef HWSIM_PIPELINE_SHADE_COUNT_FRAGMENT_INL_H_
-#undef HWSIM_PIPELINE_SHADE_COUNT_FRAGMENT_INL_H_
+#include "pipeline/simd/vec-inl.h"
+#include "pipeline/texture/texture_sampler-inl.h"
+#if defined(HWSIM_SHADE_COUNT_FRAGMENT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_SHADE_COUNT_FRAGMENT_INL_H_
+#undef HWSIM_SHADE_COUNT_FRAGMENT_INL_H_
 #else
-#define HWSIM_PIPELINE_SHADE_COUNT_FRAGMENT_INL_H_
+#define HWSIM_SHADE_COUNT_FRAGMENT_INL_H_
 #endif
 
 HWY_BEFORE_NAMESPACE();

@@ -1,12 +1,13 @@
 // What a fragment shader sees, on the host's vector registers. A shader is a struct with
 //   template <class S> static void run(S& s, const Uniforms& uniforms)
 // written once against this class and CountFragment (shade/count_fragment-inl.h). Per-target include guard.
-#include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/batch/fragment_batch.h"
+#include "pipeline/image/image.h"
 #include "pipeline/shade/buffer_access-inl.h"
-#include "pipeline/shade/codec-inl.h"
 #include "pipeline/shade/lane_flow-inl.h"
-#include "pipeline/shade/lanes-inl.h"
-#include "pipeline/shade/texture_sampler-inl.h"
+#include "pipeline/simd/codec-inl.h"
+#include "pipeline/simd/lanes-inl.h"
+#include "pipeline/texture/texture_sampler-inl.h"
 
 #if defined(HWSIM_SHADE_FRAGMENT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_SHADE_FRAGMENT_LANES_INL_H_

@@ -1,7 +1,7 @@
 // What a geometry shader sees: a triangle a lane, on the host's vector registers. A shader is a struct with
 //   template <class S> static void run(S& s, const Uniforms& uniforms)
 // written once against this class and CountGeometry (below). Per-target include guard.
-#include "pipeline/emulate/geometry_batch.h"
+#include "pipeline/batch/geometry_batch.h"
 #include "pipeline/shade/count_fragment-inl.h"
 #include "pipeline/shade/lane_flow-inl.h"
 

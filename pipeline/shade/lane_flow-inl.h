@@ -1,7 +1,7 @@
 // Branches and loops of shaders on the host's vector registers: which lanes go on, and how often each went
 // through which block. Shared by fragment, geometry and compute contexts. Per-target include guard.
-#include "pipeline/emulate/fragment_batch.h"
-#include "pipeline/shade/lanes-inl.h"
+#include "pipeline/batch/fragment_batch.h"
+#include "pipeline/simd/lanes-inl.h"
 
 #if defined(HWSIM_SHADE_LANE_FLOW_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_SHADE_LANE_FLOW_INL_H_

@@ -1,17 +1,17 @@
 // Shading models (techniques 0.5) and direct lighting, for every lane type: the emulator's registers, the
-// counting type, and the scalar of the ray-traced reference. Per-target include guard, see shade/lanes-inl.h.
+// counting type, and the scalar of the ray-traced reference. Per-target include guard, see simd/lanes-inl.h.
 #include <hwy/highway.h>
 
-#include "pipeline/shade/codec-inl.h"
 #include "pipeline/shade/lighting.h"
-#include "pipeline/shade/transcendental-inl.h"
-#include "pipeline/shade/vec-inl.h"
+#include "pipeline/simd/codec-inl.h"
+#include "pipeline/simd/transcendental-inl.h"
+#include "pipeline/simd/vec-inl.h"
 
-#if defined(HWSIM_PIPELINE_SHADE_LIGHTING_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef HWSIM_PIPELINE_SHADE_LIGHTING_INL_H_
-#undef HWSIM_PIPELINE_SHADE_LIGHTING_INL_H_
+#if defined(HWSIM_SHADE_LIGHTING_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_SHADE_LIGHTING_INL_H_
+#undef HWSIM_SHADE_LIGHTING_INL_H_
 #else
-#define HWSIM_PIPELINE_SHADE_LIGHTING_INL_H_
+#define HWSIM_SHADE_LIGHTING_INL_H_
 #endif
 
 HWY_BEFORE_NAMESPACE();
@@ -120,7 +120,7 @@ F point_attenuation(const PointLight& light, const Vec3<F>& position, Vec3<F>& l
   return attenuation;
 }
 
-/// Block numbers of lighting within a shader's blocks (shade/program.h); materials use 1 to 5.
+/// Block numbers of lighting within a shader's blocks (batch/program.h); materials use 1 to 5.
 enum LightingBlock : int { kShadowBlock = 6, kDirectionalBlock = 7, kPointBlock = 8, kPointInRangeBlock = 9 };
 
 /// Share of the light that reaches a point: 2x2 taps, each compared, bilinear between texels.

@@ -1,6 +1,6 @@
 #include "pipeline/shade/mesh_vertex.h"
 
-#include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/batch/fragment_batch.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pipeline/shade/mesh_vertex.cpp"

@@ -3,7 +3,7 @@
 // bit-identical between passes.
 #include <glm/glm.hpp>
 
-#include "pipeline/shade/program.h"
+#include "pipeline/batch/program.h"
 
 namespace hwsim::pipeline {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "pipeline/shade/program.h"
+#include "pipeline/batch/program.h"
 
 namespace hwsim::pipeline {
 

@@ -1,14 +1,14 @@
 // From interpolated attributes and a material to a Surface: shared by forward shading and G-buffer passes.
-// Per-target include guard, see shade/lanes-inl.h.
+// Per-target include guard, see simd/lanes-inl.h.
 #include <hwy/highway.h>
-#include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/batch/fragment_batch.h"
 #include "pipeline/shade/lighting-inl.h"
 #include "pipeline/shade/mesh_vertex.h"
-#if defined(HWSIM_PIPELINE_SHADE_SURFACE_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef HWSIM_PIPELINE_SHADE_SURFACE_INL_H_
-#undef HWSIM_PIPELINE_SHADE_SURFACE_INL_H_
+#if defined(HWSIM_SHADE_SURFACE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef HWSIM_SHADE_SURFACE_INL_H_
+#undef HWSIM_SHADE_SURFACE_INL_H_
 #else
-#define HWSIM_PIPELINE_SHADE_SURFACE_INL_H_
+#define HWSIM_SHADE_SURFACE_INL_H_
 #endif
 
 HWY_BEFORE_NAMESPACE();

@@ -3,10 +3,10 @@
 // guard.
 #include <algorithm>
 #include <string>
-#include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/batch/fragment_batch.h"
 #include "pipeline/shade/count_lane.h"
-#include "pipeline/shade/lanes-inl.h"
-#include "pipeline/shade/vec-inl.h"
+#include "pipeline/simd/lanes-inl.h"
+#include "pipeline/simd/vec-inl.h"
 
 #if defined(HWSIM_SHADE_VERTEX_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_SHADE_VERTEX_LANES_INL_H_

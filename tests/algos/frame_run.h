@@ -10,7 +10,7 @@
 #include "algos/techniques.h"
 #include "hwsim/gpu/every_feature.h"
 #include "pipeline/emulate/emulator.h"
-#include "pipeline/scene/scene_source.h"
+#include "pipeline/open/scene_source.h"
 #include "support/places.h"
 
 namespace hwsim::test {

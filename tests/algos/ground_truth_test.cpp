@@ -7,11 +7,12 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "algos/base/frame_parts.h"
+#include "algos/techniques.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/image/metrics.h"
+#include "pipeline/open/scene_source.h"
 #include "pipeline/reference/reference_shading.h"
 #include "pipeline/scene/mip_chain.h"
-#include "pipeline/scene/scene_source.h"
 #include "pipeline/scene_glb.h"
 
 namespace hwsim::algos {

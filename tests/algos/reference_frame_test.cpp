@@ -4,9 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "algos/techniques.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/image/metrics.h"
-#include "pipeline/scene/scene_source.h"
+#include "pipeline/open/scene_source.h"
 #include "support/places.h"
 
 namespace hwsim::algos {

@@ -11,7 +11,7 @@
 
 // One vector target is enough here: without foreach_target.
 #include "algos/sss/shaders/pixel-inl.h"
-#include "pipeline/shade/scalar_lane-inl.h"
+#include "pipeline/simd/scalar_lane-inl.h"
 
 namespace hwsim::test {
 namespace {

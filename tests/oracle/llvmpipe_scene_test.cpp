@@ -12,8 +12,8 @@
 #include "oracle/exact_coverage.h"
 #include "oracle/llvmpipe.h"
 #include "oracle/random_triangles.h"
-#include "pipeline/raster/sample_pattern.h"
-#include "pipeline/scene/scene_source.h"
+#include "pipeline/open/scene_source.h"
+#include "pipeline/state/sample_pattern.h"
 #include "support/frames.h"
 #include "support/places.h"
 

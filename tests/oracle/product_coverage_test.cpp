@@ -9,8 +9,8 @@
 
 #include "oracle/exact_coverage.h"
 #include "oracle/random_triangles.h"
-#include "pipeline/raster/sample_pattern.h"
 #include "pipeline/raster/triangle.h"
+#include "pipeline/state/sample_pattern.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "oracle/product_coverage_test.cpp"

@@ -12,12 +12,12 @@
 
 #include "oracle/id_program.h"
 #include "pipeline/emulate/emulator.h"
-#include "pipeline/raster/sample_pattern.h"
+#include "pipeline/open/scene_source.h"
 #include "pipeline/reference/reference.h"
 #include "pipeline/reference/reference_shading.h"
-#include "pipeline/scene/scene_source.h"
 #include "pipeline/scene_glb.h"
 #include "pipeline/shade/mesh_vertex.h"
+#include "pipeline/state/sample_pattern.h"
 #include "support/places.h"
 
 namespace hwsim::oracle {

@@ -5,9 +5,9 @@
 #include <deque>
 #include <random>
 
-#include "pipeline/depth/stencil.h"
 #include "pipeline/emulate/vertex_stage.h"
-#include "pipeline/raster/sample_pattern.h"
+#include "pipeline/memory/stencil.h"
+#include "pipeline/state/sample_pattern.h"
 #include "support/frames.h"
 
 namespace hwsim::pipeline {

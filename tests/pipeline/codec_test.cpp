@@ -1,6 +1,6 @@
 // Formats against exact rational arithmetic (every value of these formats, and every product below, is exact
 // in double or in 128-bit integers), and the transcendental functions against the library's doubles.
-#include "pipeline/shade/codec-inl.h"
+#include "pipeline/simd/codec-inl.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <random>
 
 #include "pipeline/image/image.h"
-#include "pipeline/shade/scalar_lane-inl.h"
-#include "pipeline/shade/texture_view.h"
+#include "pipeline/simd/scalar_lane-inl.h"
+#include "pipeline/image/image.h"
 
 namespace hwsim::pipeline {
 namespace {

@@ -1,6 +1,6 @@
 // Coverage at more positions than samples (techniques 1.6): memory, maps by hand, and pictures against
 // multisampling at all positions.
-#include "pipeline/emulate/coverage_map.h"
+#include "pipeline/memory/coverage_map.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "pipeline/raster/sample_pattern.h"
+#include "pipeline/state/sample_pattern.h"
 #include "support/frames.h"
 
 namespace hwsim::pipeline {

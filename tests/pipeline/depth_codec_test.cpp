@@ -1,7 +1,7 @@
 // Packing a depth tile and unpacking it gives every sample back, bit for bit: on every tile of the scenes,
 // and on random tiles (HWSIM_RANDOM_TILES sets how many; 10,000,000 is the figure of docs/verification.md).
 // The packer's scalar arithmetic is another implementation than the vector code that wrote the planes.
-#include "pipeline/depth/depth_codec.h"
+#include "pipeline/memory/depth_codec.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <random>
 
-#include "pipeline/scene/scene_source.h"
+#include "pipeline/open/scene_source.h"
 #include "support/frames.h"
 #include "support/places.h"
 

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "pipeline/scene/scene_source.h"
+#include "pipeline/open/scene_source.h"
 #include "support/frames.h"
 #include "support/places.h"
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-#include "pipeline/raster/sample_pattern.h"
+#include "pipeline/state/sample_pattern.h"
 #include "support/frames.h"
 
 namespace hwsim::pipeline {

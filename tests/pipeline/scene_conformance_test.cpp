@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/scene/gltf_loader.h"
+#include "pipeline/gltf/gltf_loader.h"
 #include "support/places.h"
 
 namespace hwsim::pipeline {

@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-#include "pipeline/scene/scene_source.h"
+#include "pipeline/open/scene_source.h"
 #include "tests/pipeline/scene_glb.h"
 
 namespace hwsim::pipeline {

@@ -5,9 +5,9 @@
 #include <functional>
 #include <limits>
 
-#include "pipeline/scene/gltf_loader.h"
-#include "pipeline/scene/scene_check.h"
-#include "pipeline/scene/scene_source.h"
+#include "pipeline/gltf/gltf_loader.h"
+#include "pipeline/open/scene_check.h"
+#include "pipeline/open/scene_source.h"
 #include "tests/pipeline/scene_glb.h"
 
 namespace hwsim::pipeline {

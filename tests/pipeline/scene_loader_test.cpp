@@ -4,7 +4,7 @@
 #include <limits>
 #include <set>
 
-#include "pipeline/scene/gltf_loader.h"
+#include "pipeline/gltf/gltf_loader.h"
 #include "tests/pipeline/scene_glb.h"
 
 namespace hwsim::pipeline {

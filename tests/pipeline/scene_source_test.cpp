@@ -1,4 +1,4 @@
-#include "pipeline/scene/scene_source.h"
+#include "pipeline/open/scene_source.h"
 
 #include <gtest/gtest.h>
 

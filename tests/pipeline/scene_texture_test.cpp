@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "pipeline/generate/png.h"
+#include "pipeline/gltf/gltf_loader.h"
+#include "pipeline/gltf/vertices.h"
 #include "pipeline/image/image.h"
-#include "pipeline/scene/generate/png.h"
-#include "pipeline/scene/gltf/vertices.h"
-#include "pipeline/scene/gltf_loader.h"
 #include "pipeline/scene/mip_chain.h"
 #include "tests/pipeline/scene_glb.h"
 

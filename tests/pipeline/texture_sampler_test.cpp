@@ -1,5 +1,5 @@
 // The texture unit against a sampler in double precision, written from the rules of OpenGL 4.6, section 8.14.
-#include "pipeline/shade/texture_sampler-inl.h"
+#include "pipeline/texture/texture_sampler-inl.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 
 #include "pipeline/image/image.h"
-#include "pipeline/shade/scalar_lane-inl.h"
+#include "pipeline/simd/scalar_lane-inl.h"
 #include "support/frames.h"
 
 namespace hwsim::pipeline {

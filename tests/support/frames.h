@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "hwsim/gpu/every_feature.h"
+#include "pipeline/batch/fragment_batch.h"
 #include "pipeline/emulate/emulator.h"
-#include "pipeline/emulate/fragment_batch.h"
 #include "pipeline/shade/mesh_vertex.h"
 
 namespace hwsim::test {

@@ -1,6 +1,6 @@
 // The passes of AGAA that draw: visibility, and generation of the aggregate G-buffer.
 #include "algos/agaa/shaders/programs.h"
-#include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/batch/fragment_batch.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "algos/agaa/shaders/geometry.cpp"

@@ -1,5 +1,5 @@
 // The light that one aggregate of a pixel reflects (techniques 4.8). Per-target include guard, see
-// shade/lanes-inl.h.
+// simd/lanes-inl.h.
 #include <hwy/highway.h>
 #include "algos/agaa/shaders/lobes-inl.h"
 #include "algos/agaa/shaders/programs.h"

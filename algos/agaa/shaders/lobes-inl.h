@@ -1,5 +1,5 @@
 // Lobes of normals that an aggregate holds, and what they reflect (techniques 4.8): Toksvig (2005), LEAN
-// (Olano and Baker 2010), SGGX (Heitz et al. 2015). Per-target include guard, see shade/lanes-inl.h.
+// (Olano and Baker 2010), SGGX (Heitz et al. 2015). Per-target include guard, see simd/lanes-inl.h.
 #include <hwy/highway.h>
 #include "algos/agaa/shaders/record-inl.h"
 #include "pipeline/shade/lighting-inl.h"

@@ -1,6 +1,6 @@
 // Compute programs of one invocation a pixel, in groups of 16x16: a shader is a struct with
 //   template <class S> static void run(S& s, const Uniforms& uniforms)
-// over ComputeLanes, counted on CountFragment. Per-target include guard, see shade/lanes-inl.h.
+// over ComputeLanes, counted on CountFragment. Per-target include guard, see simd/lanes-inl.h.
 #include <hwy/highway.h>
 #include <string>
 #include "pipeline/shade/compute_lanes-inl.h"

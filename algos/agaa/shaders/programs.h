@@ -4,9 +4,9 @@
 #include <glm/glm.hpp>
 
 #include "hwsim/trace/format.h"
-#include "pipeline/graph/pipeline_state.h"
+#include "pipeline/batch/program.h"
 #include "pipeline/shade/lighting.h"
-#include "pipeline/shade/program.h"
+#include "pipeline/state/pipeline_state.h"
 
 namespace hwsim::algos {
 

@@ -1,10 +1,10 @@
 // What passes 1 to 4 of AGAA share: the pixel's frame, normal codes, and records of aggregates.
-// Per-target include guard, see shade/lanes-inl.h.
+// Per-target include guard, see simd/lanes-inl.h.
 #include <hwy/highway.h>
 #include <type_traits>
 #include "algos/agaa/shaders/programs.h"
 #include "pipeline/shade/bit_ops-inl.h"
-#include "pipeline/shade/vec-inl.h"
+#include "pipeline/simd/vec-inl.h"
 #if defined(HWSIM_ALGOS_AGAA_SHADERS_RECORD_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_ALGOS_AGAA_SHADERS_RECORD_INL_H_
 #undef HWSIM_ALGOS_AGAA_SHADERS_RECORD_INL_H_

@@ -1,6 +1,6 @@
 // Shading of aggregates (techniques 4.8).
 #include "algos/agaa/shaders/programs.h"
-#include "pipeline/emulate/fragment_batch.h"
+#include "pipeline/batch/fragment_batch.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "algos/agaa/shaders/shade.cpp"

@@ -3,9 +3,9 @@
 #include <array>
 
 #include "algos/base/shaders/gbuffer_layouts.h"
-#include "pipeline/graph/pipeline_state.h"
+#include "pipeline/batch/program.h"
 #include "pipeline/shade/lighting.h"
-#include "pipeline/shade/program.h"
+#include "pipeline/state/pipeline_state.h"
 
 namespace hwsim::algos {
 

@@ -1,5 +1,5 @@
 // Screen derivatives for shaders that also run on the counting type. Per-target include guard, see
-// shade/lanes-inl.h.
+// simd/lanes-inl.h.
 #include <hwy/highway.h>
 #include "pipeline/shade/count_fragment-inl.h"
 #if defined(HWSIM_ALGOS_BASE_SHADERS_DERIVATIVES_INL_H_) == defined(HWY_TARGET_TOGGLE)

@@ -1,6 +1,6 @@
 #pragma once
+#include "pipeline/batch/program.h"
 #include "pipeline/shade/lighting.h"
-#include "pipeline/shade/program.h"
 
 namespace hwsim::algos {
 

@@ -1,5 +1,5 @@
 // Encoding and decoding of the G-buffer, shared by the passes that write and read it.
-// Per-target include guard, see shade/lanes-inl.h.
+// Per-target include guard, see simd/lanes-inl.h.
 #include <hwy/highway.h>
 #include "algos/base/shaders/deferred.h"
 #include "pipeline/shade/surface-inl.h"

@@ -1,6 +1,6 @@
 #pragma once
 // Full-screen programs of supersampling.
-#include "pipeline/shade/program.h"
+#include "pipeline/batch/program.h"
 
 namespace hwsim::algos {
 

@@ -1,7 +1,7 @@
 #pragma once
 // The four passes of CMAA (techniques 7.4). An invocation works on 2x2 pixels of the image; a depth image of
 // half the size holds which of them are still of interest.
-#include "pipeline/shade/program.h"
+#include "pipeline/batch/program.h"
 
 namespace hwsim::algos {
 

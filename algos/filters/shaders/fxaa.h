@@ -2,7 +2,7 @@
 // FXAA 3.11 Quality and AXAA (techniques 7.1, 7.2): one shader, whose rules are switched by uniforms.
 #include <array>
 
-#include "pipeline/shade/program.h"
+#include "pipeline/batch/program.h"
 
 namespace hwsim::algos {
 

@@ -1,6 +1,6 @@
 #pragma once
 // The three passes of MLAA on a GPU (techniques 7.5).
-#include "pipeline/shade/program.h"
+#include "pipeline/batch/program.h"
 
 namespace hwsim::algos {
 

@@ -1,6 +1,6 @@
 #pragma once
 // The three passes of SMAA 1x (techniques 7.3).
-#include "pipeline/shade/program.h"
+#include "pipeline/batch/program.h"
 
 namespace hwsim::algos {
 

@@ -3,7 +3,7 @@
 #include <hwy/highway.h>
 #include "algos/base/shaders/gbuffer-inl.h"
 #include "algos/sbaa/shaders/programs.h"
-#include "pipeline/shade/texture_view.h"
+#include "pipeline/image/image.h"
 #if defined(HWSIM_ALGOS_SBAA_SHADERS_RECORD_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_ALGOS_SBAA_SHADERS_RECORD_INL_H_
 #undef HWSIM_ALGOS_SBAA_SHADERS_RECORD_INL_H_

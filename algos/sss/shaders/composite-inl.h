@@ -1,4 +1,4 @@
-// What was sampled, over the frame. Per-target include guard, see shade/lanes-inl.h.
+// What was sampled, over the frame. Per-target include guard, see simd/lanes-inl.h.
 #include <hwy/highway.h>
 #include "algos/sss/shaders/view-inl.h"
 #if defined(HWSIM_ALGOS_SSS_SHADERS_COMPOSITE_INL_H_) == defined(HWY_TARGET_TOGGLE)

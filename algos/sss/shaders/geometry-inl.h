@@ -1,5 +1,5 @@
 // What geometry shaders of selective supersampling share: their kind, and the triangle that they are given.
-// Per-target include guard, see shade/lanes-inl.h.
+// Per-target include guard, see simd/lanes-inl.h.
 #include <hwy/highway.h>
 #include "algos/sss/shaders/view-inl.h"
 #include "pipeline/shade/geometry_lanes-inl.h"

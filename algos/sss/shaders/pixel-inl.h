@@ -1,8 +1,8 @@
 // Which places of a pixel a triangle covers (techniques 5.4). Per-target include guard, see
-// shade/lanes-inl.h.
+// simd/lanes-inl.h.
 #include <hwy/highway.h>
 #include "algos/sss/shaders/view-inl.h"
-#include "pipeline/shade/vec-inl.h"
+#include "pipeline/simd/vec-inl.h"
 #if defined(HWSIM_ALGOS_SSS_SHADERS_PIXEL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_ALGOS_SSS_SHADERS_PIXEL_INL_H_
 #undef HWSIM_ALGOS_SSS_SHADERS_PIXEL_INL_H_

@@ -1,10 +1,10 @@
 // What the variants of selective supersampling share: a triangle in this view, whether it is critical, and
-// the lighting of a point on it. Per-target include guard, see shade/lanes-inl.h.
+// the lighting of a point on it. Per-target include guard, see simd/lanes-inl.h.
 #include <hwy/highway.h>
 #include "algos/sss/shaders/programs.h"
 #include "pipeline/shade/bit_ops-inl.h"
 #include "pipeline/shade/surface-inl.h"
-#include "pipeline/shade/texture_sampler-inl.h"
+#include "pipeline/texture/texture_sampler-inl.h"
 #if defined(HWSIM_ALGOS_SSS_SHADERS_VIEW_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_ALGOS_SSS_SHADERS_VIEW_INL_H_
 #undef HWSIM_ALGOS_SSS_SHADERS_VIEW_INL_H_

@@ -6,7 +6,7 @@
 #include "algos/techniques.h"
 #include "hwsim/engines/timing.h"
 #include "pipeline/emulate/emulator.h"
-#include "pipeline/scene/scene_source.h"
+#include "pipeline/open/scene_source.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "pipeline/scene/mip_chain.h"
-#include "pipeline/shade/scalar_lane-inl.h"
-#include "pipeline/shade/texture_sampler-inl.h"
+#include "pipeline/simd/scalar_lane-inl.h"
+#include "pipeline/texture/texture_sampler-inl.h"
 
 namespace hwsim::pipeline {
 namespace {

@@ -1,0 +1,319 @@
+#include "pipeline/gltf/geometry.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <string>
+
+#include "pipeline/gltf/accessor.h"
+#include "pipeline/gltf/vertices.h"
+
+namespace hwsim::pipeline::gltf {
+namespace {
+
+const tinygltf::Accessor& accessor_at(const tinygltf::Model& model, int index) {
+  return model.accessors[static_cast<std::size_t>(index)];
+}
+
+int attribute(const tinygltf::Primitive& primitive, const char* name) {
+  const auto found = primitive.attributes.find(name);
+  return found == primitive.attributes.end() ? -1 : found->second;
+}
+
+std::uint64_t triangles_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
+  const int source = primitive.indices >= 0 ? primitive.indices : attribute(primitive, "POSITION");
+  if (source < 0) return 0;
+  const std::uint64_t count = accessor_at(model, source).count;
+  if (primitive.mode == TINYGLTF_MODE_TRIANGLES) return count / 3;
+  const bool chained =
+      primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP || primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN;
+  return chained && count > 2 ? count - 2 : 0;
+}
+
+// glTF 2.0 section 3.7.2.1: strips {i, i+1+i%2, i+2-i%2}, fans {i+1, i+2, 0}.
+std::vector<std::uint32_t> triangle_list(const std::vector<std::uint32_t>& v, int mode) {
+  std::vector<std::uint32_t> out;
+  if (mode == TINYGLTF_MODE_TRIANGLES) {
+    out.assign(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 3 * 3));
+    return out;
+  }
+  for (std::size_t i = 0; i + 2 < v.size(); ++i) {
+    if (mode == TINYGLTF_MODE_TRIANGLE_STRIP)
+      out.insert(out.end(), {v[i], v[i + 1 + i % 2], v[i + 2 - i % 2]});
+    else
+      out.insert(out.end(), {v[i + 1], v[i + 2], v[0]});
+  }
+  return out;
+}
+
+struct Needs {
+  bool uv0 = false, uv1 = false, tangents = false;
+  int tangent_uv_set = 0;
+};
+
+Needs needs_of(const Material& material) {
+  Needs needs;
+  for (const TextureRef* ref :
+       {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
+        &material.emissive_texture, &material.occlusion_texture}) {
+    if (ref->texture < 0) continue;
+    (ref->uv_set == 1 ? needs.uv1 : needs.uv0) = true;
+  }
+  needs.tangents = material.normal_texture.texture >= 0;
+  needs.tangent_uv_set = material.normal_texture.uv_set;
+  return needs;
+}
+
+class MeshBuilder {
+ public:
+  MeshBuilder(Report& report, const tinygltf::Model& model, const std::vector<Material>& materials)
+      : report_(report), model_(model), materials_(materials) {}
+
+  void add(const tinygltf::Primitive& primitive, const std::string& where, int material) {
+    if (!draws_triangles(primitive, where)) return;
+    const Needs needs = needs_of(materials_[static_cast<std::size_t>(material)]);
+    std::vector<std::uint32_t> indices = read_triangles(primitive, where);
+    if (indices.empty())
+      return report_.note("S105", "a primitive has no whole triangle and draws nothing", where);
+    count_stored_bytes(primitive);
+    const std::uint32_t base = attribute(primitive, "NORMAL") < 0
+                                   ? add_flat(primitive, where, needs, indices)
+                                   : add_shared(primitive, where, needs, indices);
+    Mesh::Part part;
+    part.first_index = static_cast<std::uint32_t>(mesh_.indices.size());
+    part.index_count = static_cast<std::uint32_t>(indices.size());
+    part.material = material;
+    mesh_.parts.push_back(part);
+    for (const std::uint32_t index : indices) mesh_.indices.push_back(base + index);
+  }
+
+  Mesh take() {
+    mesh_.index_bytes = index_bytes_ ? index_bytes_ : 4;
+    place_wire_surfaces();
+    set_bounds();
+    return std::move(mesh_);
+  }
+
+ private:
+  bool draws_triangles(const tinygltf::Primitive& primitive, const std::string& where) {
+    if (primitive.mode < 0 || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
+      report_.fail("S004", where + ".mode is " + std::to_string(primitive.mode) + ", must be from 0 to 6");
+    if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
+      report_.note("S103", "points and lines are not drawn", where);
+      return false;
+    }
+    if (attribute(primitive, "POSITION") >= 0) return true;
+    report_.note("S104", "a primitive without positions draws nothing", where);
+    return false;
+  }
+
+  std::vector<std::uint32_t> read_triangles(const tinygltf::Primitive& primitive, const std::string& where) {
+    const std::size_t vertex_count = accessor_at(model_, attribute(primitive, "POSITION")).count;
+    std::vector<std::uint32_t> order;
+    if (primitive.indices >= 0) {
+      order = read_indices(report_, model_, primitive.indices, where + " indices");
+      const auto bad =
+          std::find_if(order.begin(), order.end(), [&](std::uint32_t i) { return i >= vertex_count; });
+      if (bad != order.end())
+        report_.fail("S009", where + " indices: element " + std::to_string(bad - order.begin()) + " is " +
+                                 std::to_string(*bad) + ", but there are " + std::to_string(vertex_count) +
+                                 " vertices");
+    } else {
+      order.resize(vertex_count);
+      for (std::size_t i = 0; i < vertex_count; ++i) order[i] = static_cast<std::uint32_t>(i);
+    }
+    if (primitive.mode == TINYGLTF_MODE_TRIANGLES && order.size() % 3 != 0)
+      report_.note("S105", "indices after the last whole triangle are ignored", where);
+    return triangle_list(order, primitive.mode);
+  }
+
+  // No normals: every triangle has vertices of its own.
+  std::uint32_t add_flat(const tinygltf::Primitive& primitive, const std::string& where, const Needs& needs,
+                         std::vector<std::uint32_t>& indices) {
+    Vertices vertices = read_vertices(primitive, where, needs);
+    split_flat(vertices, indices);
+    report_.note("S106", "no normals: flat ones were generated, three vertices a triangle", where);
+    finish_tangents(vertices, indices, where, needs);
+    return append(vertices, where);
+  }
+
+  // Exporters often write one set of vertices for many primitives: it is kept once, unless tangents are
+  // generated, which depend on the primitive's triangles; then each keeps a copy of the vertices that it
+  // uses.
+  std::uint32_t add_shared(const tinygltf::Primitive& primitive, const std::string& where, const Needs& needs,
+                           std::vector<std::uint32_t>& indices) {
+    const bool own_copy = needs.tangents && attribute(primitive, "TANGENT") < 0;
+    std::string key = std::to_string(needs.uv0) + std::to_string(needs.uv1) + std::to_string(needs.tangents);
+    for (const auto& [name, accessor] : primitive.attributes)
+      key += ' ' + name + ' ' + std::to_string(accessor);
+    if (const auto found = base_of_.find(key); found != base_of_.end() && !own_copy) return found->second;
+    Vertices vertices = read_vertices(primitive, where, needs);
+    if (own_copy) keep_used(vertices, indices);
+    if (const std::size_t wrong = repair_normals(vertices, indices); wrong > 0)
+      report_.warn("S107", "normals that are not of unit length were normalized", where);
+    finish_tangents(vertices, indices, where, needs);
+    const std::uint32_t base = append(vertices, where);
+    if (!own_copy) base_of_[key] = base;
+    return base;
+  }
+
+  std::uint32_t append(const Vertices& vertices, const std::string& where) {
+    const std::size_t base = mesh_.positions.size();
+    if (base + vertices.positions.size() > std::numeric_limits<std::uint32_t>::max())
+      report_.fail("S012", where + ": the mesh has more than 4294967295 vertices", "split the mesh");
+    append_vertices(mesh_, vertices);
+    return static_cast<std::uint32_t>(base);
+  }
+
+  template <class T>
+  std::vector<T> read_attribute(const tinygltf::Primitive& primitive, const char* name,
+                                const std::string& where) {
+    constexpr int kComponents = static_cast<int>(sizeof(T) / sizeof(float));
+    const int accessor = attribute(primitive, name);
+    if (accessor < 0) return {};
+    const std::string place = where + " attribute " + name;
+    const std::vector<float> flat = read_floats(report_, model_, accessor, kComponents, place);
+    const std::size_t wanted = accessor_at(model_, attribute(primitive, "POSITION")).count;
+    if (flat.size() != wanted * kComponents)
+      report_.fail("S009", place + " has " + std::to_string(flat.size() / kComponents) +
+                               " elements, POSITION has " + std::to_string(wanted));
+    std::vector<T> out(wanted);
+    if (!flat.empty()) std::memcpy(static_cast<void*>(out.data()), flat.data(), flat.size() * sizeof(float));
+    return out;
+  }
+
+  std::vector<glm::vec4> read_colors(const tinygltf::Primitive& primitive, const std::string& where) {
+    const int accessor = attribute(primitive, "COLOR_0");
+    if (accessor < 0 || accessor_at(model_, accessor).type == TINYGLTF_TYPE_VEC4)
+      return read_attribute<glm::vec4>(primitive, "COLOR_0", where);
+    const auto rgb = read_attribute<glm::vec3>(primitive, "COLOR_0", where);
+    std::vector<glm::vec4> out(rgb.size());
+    std::transform(rgb.begin(), rgb.end(), out.begin(),
+                   [](const glm::vec3& c) { return glm::vec4(c, 1.0f); });
+    return out;
+  }
+
+  Vertices read_vertices(const tinygltf::Primitive& primitive, const std::string& where, const Needs& needs) {
+    Vertices v;
+    v.positions = read_attribute<glm::vec3>(primitive, "POSITION", where);
+    v.normals = read_attribute<glm::vec3>(primitive, "NORMAL", where);
+    v.uv0 = read_attribute<glm::vec2>(primitive, "TEXCOORD_0", where);
+    v.uv1 = read_attribute<glm::vec2>(primitive, "TEXCOORD_1", where);
+    v.colors = read_colors(primitive, where);
+    v.radius = read_attribute<float>(primitive, "_RADIUS", where);
+    if (needs.tangents || !v.radius.empty())
+      v.tangents = read_attribute<glm::vec4>(primitive, "TANGENT", where);
+    check_wire(v, where);
+    for (auto& [uv, needed] : {std::pair{&v.uv0, needs.uv0}, std::pair{&v.uv1, needs.uv1}}) {
+      if (!needed || !uv->empty()) continue;
+      uv->assign(v.positions.size(), glm::vec2(0.0f));
+      report_.note("S108", "a texture is used without texture coordinates: all were set to 0", where);
+    }
+    return v;
+  }
+
+  void check_wire(Vertices& v, const std::string& where) {
+    if (v.radius.empty()) return;
+    if (v.normals.empty() || v.tangents.empty()) {
+      report_.warn("S109", "_RADIUS is ignored: a wire needs NORMAL (outward) and TANGENT (along its axis)",
+                   where);
+      v.radius.clear();
+      v.tangents.clear();
+      return;
+    }
+    const auto bad = std::find_if(v.radius.begin(), v.radius.end(), [](float r) { return r < 0.0f; });
+    if (bad != v.radius.end()) report_.fail("S010", where + " attribute _RADIUS has a negative value");
+  }
+
+  void finish_tangents(Vertices& v, const std::vector<std::uint32_t>& indices, const std::string& where,
+                       const Needs& needs) {
+    if (!v.tangents.empty()) {
+      if (repair_tangents(v) > 0)
+        report_.warn("S107", "tangents that are not of unit length were repaired", where);
+    } else if (needs.tangents) {
+      generate_tangents(v, indices, needs.tangent_uv_set);
+      report_.note("S106", "no tangents: they were generated for the normal texture", where);
+    }
+  }
+
+  void count_stored_bytes(const tinygltf::Primitive& primitive) {
+    int bytes = 0;
+    for (const char* name :
+         {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0", "_RADIUS"})
+      if (const int accessor = attribute(primitive, name); accessor >= 0)
+        bytes += element_bytes(model_, accessor);
+    mesh_.vertex_bytes = std::max(mesh_.vertex_bytes, bytes);
+    if (primitive.indices >= 0)
+      index_bytes_ = std::max(index_bytes_, element_bytes(model_, primitive.indices));
+  }
+
+  void set_bounds() {
+    if (mesh_.positions.empty()) return;
+    mesh_.bounds_min = mesh_.bounds_max = mesh_.positions.front();
+    for (std::size_t i = 0; i < mesh_.positions.size(); ++i) {
+      mesh_.bounds_min = glm::min(mesh_.bounds_min, mesh_.positions[i]);
+      mesh_.bounds_max = glm::max(mesh_.bounds_max, mesh_.positions[i]);
+    }
+    for (Mesh::Part& part : mesh_.parts)
+      for (std::uint32_t i = 0; i < part.index_count; i += 3 * kClusterTriangles)
+        part.clusters.push_back(
+            cluster_of(part.first_index + i, std::min(3 * kClusterTriangles, part.index_count - i)));
+  }
+
+  TriangleCluster cluster_of(std::uint32_t first_index, std::uint32_t count) const {
+    TriangleCluster cluster;
+    cluster.first_vertex = cluster.last_vertex = mesh_.indices[first_index];
+    cluster.bounds_min = cluster.bounds_max = mesh_.positions[cluster.first_vertex];
+    for (std::uint32_t i = first_index; i < first_index + count; ++i) {
+      const std::uint32_t v = mesh_.indices[i];
+      cluster.first_vertex = std::min(cluster.first_vertex, v);
+      cluster.last_vertex = std::max(cluster.last_vertex, v);
+      cluster.bounds_min = glm::min(cluster.bounds_min, mesh_.positions[v]);
+      cluster.bounds_max = glm::max(cluster.bounds_max, mesh_.positions[v]);
+    }
+    return cluster;
+  }
+
+  /// Files hold a wire's center line (techniques 6); everything but wire anti-aliasing draws its surface.
+  void place_wire_surfaces() {
+    for (std::size_t i = 0; i < mesh_.radius.size(); ++i)
+      mesh_.positions[i] += mesh_.normals[i] * mesh_.radius[i];
+  }
+
+  Report& report_;
+  const tinygltf::Model& model_;
+  const std::vector<Material>& materials_;
+  Mesh mesh_;
+  int index_bytes_ = 0;
+  std::map<std::string, std::uint32_t> base_of_;
+};
+
+}  // namespace
+
+Mesh build_mesh(Report& report, const tinygltf::Model& model, int mesh_index,
+                const std::vector<Material>& materials, int default_material) {
+  const auto place = static_cast<std::size_t>(mesh_index);
+  const tinygltf::Mesh& source = model.meshes[place];
+  MeshBuilder builder(report, model, materials);
+  for (std::size_t i = 0; i < source.primitives.size(); ++i) {
+    const tinygltf::Primitive& primitive = source.primitives[i];
+    const std::string where = element("meshes", place) + "." + element("primitives", i);
+    if (!primitive.targets.empty())
+      report.note("S110", "morph targets are ignored: the base shape is drawn", where);
+    builder.add(primitive, where, primitive.material >= 0 ? primitive.material : default_material);
+  }
+  Mesh mesh = builder.take();
+  mesh.name = source.name.empty() ? element("meshes", place) : source.name;
+  return mesh;
+}
+
+std::uint64_t triangle_count(const tinygltf::Model& model, int mesh) {
+  std::uint64_t total = 0;
+  for (const tinygltf::Primitive& primitive : model.meshes[static_cast<std::size_t>(mesh)].primitives)
+    total += triangles_of(model, primitive);
+  return total;
+}
+
+}  // namespace hwsim::pipeline::gltf

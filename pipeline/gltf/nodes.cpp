@@ -1,0 +1,207 @@
+#include "pipeline/gltf/nodes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+#include <optional>
+#include <string>
+
+namespace hwsim::pipeline::gltf {
+namespace {
+
+glm::dmat4 local_matrix(const tinygltf::Node& node) {
+  glm::dmat4 m(1.0);
+  if (node.matrix.size() == 16) {
+    for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
+    return m;
+  }
+  if (node.rotation.size() == 4) {
+    const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+    if (const double length = glm::length(q); length > 0.0) m = glm::mat4_cast(q / length);
+  }
+  for (int i = 0; i < 3; ++i) {
+    const auto place = static_cast<std::size_t>(i);
+    if (node.scale.size() == 3) m[i] *= node.scale[place];
+    if (node.translation.size() == 3) m[3][i] = node.translation[place];
+  }
+  return m;
+}
+
+void check_matrix(const Report& report, const glm::dmat4& m, int node) {
+  constexpr double kMax = 1e18;  // squares stay inside float's range
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 4; ++r)
+      if (!(std::abs(m[c][r]) <= kMax))
+        report.fail("S010", element("nodes", static_cast<std::size_t>(node)) +
+                                "'s transformation is not finite or above 1e18");
+  if (m[0][3] != 0.0 || m[1][3] != 0.0 || m[2][3] != 0.0 || m[3][3] != 1.0)
+    report.fail("S010", element("nodes", static_cast<std::size_t>(node)) +
+                            ".matrix is not affine: its last row must be 0 0 0 1");
+}
+
+// Rotation and position without scale: a camera's or light's frame looks along -z.
+struct Frame {
+  glm::dvec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, origin{0.0};
+};
+
+std::optional<Frame> frame_of(const glm::dmat4& m) {
+  Frame f;
+  f.origin = glm::dvec3(m[3]);
+  const glm::dvec3 z(m[2]), y(m[1]);
+  const glm::dvec3 x = glm::cross(y, z);
+  if (!(glm::dot(z, z) > 1e-30) || !(glm::dot(x, x) > 1e-60)) return std::nullopt;
+  f.z = glm::normalize(z);
+  f.x = glm::normalize(x);
+  f.y = glm::cross(f.z, f.x);
+  return f;
+}
+
+glm::mat4 view_of(const Frame& f) {
+  glm::dmat4 view(1.0);
+  for (int i = 0; i < 3; ++i) {
+    view[i][0] = f.x[i];
+    view[i][1] = f.y[i];
+    view[i][2] = f.z[i];
+  }
+  view[3] = glm::dvec4(-glm::dot(f.x, f.origin), -glm::dot(f.y, f.origin), -glm::dot(f.z, f.origin), 1.0);
+  return glm::mat4(view);
+}
+
+std::optional<Light> light_of(Report& report, const tinygltf::Light& source, const Frame& frame,
+                              const std::string& where) {
+  Light light;
+  if (source.type == "directional") {
+    light.kind = LightKind::directional;
+  } else if (source.type == "point") {
+    light.kind = LightKind::point;
+  } else if (source.type == "spot") {
+    light.kind = LightKind::spot;
+  } else {
+    report.warn("S113", "lights of an unknown type are left out", where);
+    return std::nullopt;
+  }
+  for (std::size_t i = 0; i < 3; ++i)
+    light.color[static_cast<int>(i)] = static_cast<float>(
+        std::clamp((i < source.color.size() ? source.color[i] : 1.0) * source.intensity, 0.0, 1e9));
+  light.position = glm::vec3(frame.origin);
+  light.direction = glm::vec3(-frame.z);
+  light.range_m = static_cast<float>(std::clamp(source.range, 0.0, 1e18));
+  const double outer = std::clamp(source.spot.outerConeAngle, 1e-3, std::numbers::pi / 2);
+  light.outer_cone_rad = static_cast<float>(outer);
+  light.inner_cone_rad = static_cast<float>(std::clamp(source.spot.innerConeAngle, 0.0, outer * 0.999));
+  return light;
+}
+
+Camera camera_of(const Report& report, const tinygltf::Camera& source, const Frame& frame,
+                 const std::string& where) {
+  Camera camera;
+  camera.view_from_world = view_of(frame);
+  double near = 0.0, far = 0.0;
+  if (source.type == "perspective") {
+    const auto& p = source.perspective;
+    if (!(p.yfov > 1e-4 && p.yfov < std::numbers::pi * 0.999))
+      report.fail("S004", where + ".perspective.yfov is " + std::to_string(p.yfov) +
+                              " rad, must be between 0 and pi");
+    camera.fov_y_rad = static_cast<float>(p.yfov);
+    near = p.znear, far = p.zfar;
+    if (!(near > 1e-9)) report.fail("S004", where + ".perspective.znear must be above 0");
+  } else if (source.type == "orthographic") {
+    const auto& o = source.orthographic;
+    if (!(std::abs(o.ymag) > 1e-9) || !(std::abs(o.ymag) < 1e18))
+      report.fail("S004", where + ".orthographic.ymag must not be 0");
+    camera.orthographic = true;
+    camera.ortho_half_height_m = static_cast<float>(std::abs(o.ymag));
+    near = o.znear, far = o.zfar;
+  } else {
+    report.fail("S004", where + ".type is \"" + source.type + "\", must be perspective or orthographic");
+  }
+  const bool infinite = !camera.orthographic && far == 0.0;
+  if (!infinite && !(far > near && near >= 0.0 && far < 1e18))
+    report.fail("S004", where + ": zfar must be above znear, and both must be positive");
+  camera.near_m = static_cast<float>(near);
+  camera.far_m = infinite ? 0.0f : static_cast<float>(far);
+  return camera;
+}
+
+}  // namespace
+
+std::vector<PlacedNode> walk_scene(Report& report, const tinygltf::Model& model) {
+  const bool chosen = model.defaultScene >= 0;
+  if (!chosen && model.scenes.size() > 1)
+    report.note("S114", "the file has several scenes and names none: the first is drawn");
+  const tinygltf::Scene& scene = model.scenes[chosen ? static_cast<std::size_t>(model.defaultScene) : 0];
+  std::vector<PlacedNode> placed, stack;
+  std::vector<bool> seen(model.nodes.size(), false);
+  const auto push = [&](const std::vector<int>& children, const glm::dmat4& parent) {
+    for (auto child = children.rbegin(); child != children.rend(); ++child) stack.push_back({*child, parent});
+  };
+  push(scene.nodes, glm::dmat4(1.0));
+  // A stack of its own, not recursion: chains of nodes may be as long as the file.
+  while (!stack.empty()) {
+    PlacedNode next = stack.back();
+    stack.pop_back();
+    const auto index = static_cast<std::size_t>(next.node);
+    if (seen[index])
+      report.fail(
+          "S011",
+          element("nodes", index) + " is reached twice: the nodes form a cycle, or it has two parents",
+          "glTF nodes must form trees; to draw a mesh twice, let two nodes refer to it");
+    seen[index] = true;
+    next.world_from_local = next.world_from_local * local_matrix(model.nodes[index]);
+    check_matrix(report, next.world_from_local, next.node);
+    push(model.nodes[index].children, next.world_from_local);
+    placed.push_back(next);
+  }
+  return placed;
+}
+
+std::vector<Light> build_lights(Report& report, const tinygltf::Model& model,
+                                const std::vector<PlacedNode>& nodes) {
+  std::vector<Light> out;
+  bool shadow_given = false;
+  for (const PlacedNode& placed : nodes) {
+    const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(placed.node)];
+    const auto extension = node.extensions.find("KHR_lights_punctual");
+    if (extension == node.extensions.end() || !extension->second.Has("light")) continue;
+    const int index = extension->second.Get("light").GetNumberAsInt();
+    if (index < 0 || static_cast<std::size_t>(index) >= model.lights.size()) continue;
+    const std::string where = element("nodes", static_cast<std::size_t>(placed.node));
+    // A point light has no direction: any frame will do.
+    std::optional<Frame> frame = frame_of(placed.world_from_local);
+    if (!frame) {
+      report.warn("S113", "a light's node has a scale of zero: its direction is set to -z", where);
+      frame = Frame{};
+      frame->origin = glm::dvec3(placed.world_from_local[3]);
+    }
+    auto light = light_of(report, model.lights[static_cast<std::size_t>(index)], *frame, where);
+    if (!light) continue;
+    light->casts_shadow = light->kind == LightKind::directional && !shadow_given;
+    shadow_given = shadow_given || light->casts_shadow;
+    out.push_back(*light);
+  }
+  return out;
+}
+
+std::vector<Camera> build_cameras(Report& report, const tinygltf::Model& model,
+                                  const std::vector<PlacedNode>& nodes) {
+  std::vector<Camera> out;
+  for (const PlacedNode& placed : nodes) {
+    const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(placed.node)];
+    if (node.camera < 0) continue;
+    const auto index = static_cast<std::size_t>(node.camera);
+    const std::optional<Frame> frame = frame_of(placed.world_from_local);
+    if (!frame) {
+      report.warn("S115", "cameras on a node with a scale of zero are left out",
+                  element("nodes", static_cast<std::size_t>(placed.node)));
+      continue;
+    }
+    out.push_back(camera_of(report, model.cameras[index], *frame, element("cameras", index)));
+    out.back().name = !node.name.empty()                   ? node.name
+                      : !model.cameras[index].name.empty() ? model.cameras[index].name
+                                                           : element("cameras", index);
+  }
+  return out;
+}
+
+}  // namespace hwsim::pipeline::gltf

@@ -1,0 +1,21 @@
+#pragma once
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/gltf/report.h"
+
+namespace hwsim::pipeline::gltf {
+
+/// 0: no such component type.
+int component_bytes(std::uint64_t component_type);
+/// 0: no such type ("VEC3" is 3).
+int component_count(std::string_view type);
+
+/// After the types and references are known to be right: buffer views inside buffers, accessors inside their
+/// views, component types, strides, images with exactly one source.
+std::vector<Diagnostic> check_ranges(const Report& report, const nlohmann::json& root, std::size_t bin_bytes,
+                                     bool binary);
+
+}  // namespace hwsim::pipeline::gltf

@@ -1,0 +1,185 @@
+#include "pipeline/open/scene_source.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <system_error>
+#include <utility>
+
+#include "hwsim/base/content_hash.h"
+#include "pipeline/base/file_io.h"
+#include "pipeline/generate/registry.h"
+#include "pipeline/gltf/gltf_loader.h"
+
+namespace hwsim::pipeline {
+namespace {
+using Values = std::map<std::string, double>;
+
+// Raised when a generator's output changes, so that no older cached file is taken for it.
+constexpr int kGeneratorVersion = 2;
+
+[[noreturn]] void fail(const std::string& code, const std::string& message, const std::string& hint = "",
+                       const std::string& help = "") {
+  Diagnostic d;
+  d.code = code;
+  d.message = message;
+  d.hint = hint;
+  d.help = help;
+  throw InputError(d);
+}
+
+std::string shown(double value) {
+  char text[400];  // the largest double has 309 digits
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed)
+                       .ptr;  // the shortest text that reads back the same
+  return {text, end};
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+[[noreturn]] void fail_unknown(const std::string& code, const std::string& what, const std::string& name,
+                               const std::vector<std::string>& candidates) {
+  const std::string nearest = nearest_name(name, candidates);
+  const std::string hint = nearest.empty() ? "" : "did you mean `" + nearest + "`?";
+  fail(code, "unknown " + what + " `" + name + "`", hint, "known: " + joined(candidates));
+}
+
+const generate::Generator& find_generator(const std::string& name) {
+  std::vector<std::string> names;
+  for (const generate::Generator& generator : generate::registry()) {
+    if (generator.info.name == name) return generator;
+    names.push_back(generator.info.name);
+  }
+  fail_unknown("S201", "scene", name, names);
+}
+
+// Every parameter of the generator, the given values over the defaults.
+Values complete_parameters(const GeneratorInfo& info, const Values& given) {
+  Values out;
+  std::vector<std::string> names;
+  for (const GeneratorParameter& p : info.parameters) {
+    out[p.name] = p.default_value;
+    names.push_back(p.name);
+  }
+  for (const auto& [name, value] : given) {
+    const auto p =
+        std::find_if(info.parameters.begin(), info.parameters.end(),
+                     [&, &wanted = name](const GeneratorParameter& q) { return q.name == wanted; });
+    if (p == info.parameters.end()) fail_unknown("S202", "parameter of " + info.name, name, names);
+    if (!(value >= p->min && value <= p->max))
+      fail("S203", info.name + ":" + name + " = " + shown(value) + ", must be between " + shown(p->min) +
+                       " and " + shown(p->max));
+    out[name] = value;
+  }
+  return out;
+}
+
+// "name:key=value,key=value"
+std::pair<std::string, Values> parse_spec(const std::string& spec) {
+  const std::size_t colon = spec.find(':');
+  std::pair<std::string, Values> out{spec.substr(0, colon), {}};
+  std::string rest = colon == std::string::npos ? "" : spec.substr(colon + 1);
+  while (!rest.empty()) {
+    const std::string item = rest.substr(0, rest.find(','));
+    rest.erase(0, item.size() + 1);
+    const std::size_t equals = item.find('=');
+    double value = 0.0;
+    const char* first = item.data() + (equals == std::string::npos ? item.size() : equals + 1);
+    const auto [end, error] = std::from_chars(first, item.data() + item.size(), value);
+    if (equals == std::string::npos || error != std::errc() || end != item.data() + item.size())
+      fail("S204", "`" + item + "` in `" + spec + "` is not of the form key=number", "",
+           "e.g. grass:blades=20000,seed=3");
+    if (!out.second.emplace(item.substr(0, equals), value).second)
+      fail("S204", "`" + item.substr(0, equals) + "` is given twice in `" + spec + "`");
+  }
+  return out;
+}
+
+std::string cache_file_name(const std::string& name, const Values& values) {
+  std::string key = name + " version " + std::to_string(kGeneratorVersion);
+  for (const auto& [parameter, value] : values) key += ' ' + parameter + '=' + shown(value);
+  ContentHash hash;
+  hash.add({reinterpret_cast<const std::uint8_t*>(key.data()), key.size()});
+  return name + "-" + hash.hex().substr(0, 16) + ".glb";
+}
+
+void write_complete(const generate::Generator& generator, const Values& values, const std::string& path) {
+  const auto bytes = generate::encode_glb(generator.make(generate::Parameters(values)));
+  if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
+    fail("S205", generator.info.name + " with these parameters is larger than a GLB file may be (4 GiB)");
+  write_file_atomically(path, "S206", bytes);
+}
+
+bool is_file_name(const std::string& name) {
+  const std::string extension = std::filesystem::path(name).extension().string();
+  return extension == ".gltf" || extension == ".glb";
+}
+
+Scene open_generated(const std::string& spec, const std::string& cache_directory) {
+  const auto [name, given] = parse_spec(spec);
+  const generate::Generator& generator = find_generator(name);
+  const Values values = complete_parameters(generator.info, given);
+  std::error_code error;
+  std::filesystem::create_directories(cache_directory, error);
+  if (error)
+    fail("S206", "the folder `" + cache_directory + "` cannot be created: " + error.message(), "",
+         "set HWSIM_CACHE to a folder that can be written");
+  const std::string path = (std::filesystem::path(cache_directory) / cache_file_name(name, values)).string();
+  if (std::filesystem::exists(path, error)) {
+    try {
+      return load_gltf(path);
+    } catch (const InputError&) {  // a damaged cache file is no mistake of the user's: written anew
+    }
+  }
+  write_complete(generator, values, path);
+  return load_gltf(path);
+}
+
+}  // namespace
+
+std::span<const GeneratorInfo> generators() {
+  static const std::vector<GeneratorInfo> infos = [] {  // constant data
+    std::vector<GeneratorInfo> out;
+    for (const generate::Generator& generator : generate::registry()) out.push_back(generator.info);
+    return out;
+  }();
+  return infos;
+}
+
+void write_generated_scene(const std::string& name, const std::map<std::string, double>& parameters,
+                           const std::string& path) {
+  const generate::Generator& generator = find_generator(name);
+  write_complete(generator, complete_parameters(generator.info, parameters), path);
+}
+
+Scene open_scene(const std::string& name_or_path, const std::string& cache_directory) {
+  if (is_file_name(name_or_path)) return load_gltf(name_or_path);
+  Scene scene = open_generated(name_or_path, cache_directory);
+  scene.name = name_or_path;
+  return scene;
+}
+
+std::string default_cache_directory() {
+  const auto variable = [](const char* name) -> std::string {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+  };
+  namespace fs = std::filesystem;
+  if (const std::string own = variable("HWSIM_CACHE"); !own.empty()) return own;
+  if (const std::string base = variable("XDG_CACHE_HOME"); !base.empty())
+    return (fs::path(base) / "hwsim").string();
+  if (const std::string home = variable("HOME"); !home.empty())
+    return (fs::path(home) / ".cache" / "hwsim").string();
+  std::error_code error;
+  const fs::path temporary = fs::temp_directory_path(error);
+  return ((error ? fs::path(".") : temporary) / "hwsim-cache").string();
+}
+
+}  // namespace hwsim::pipeline

@@ -1,0 +1,34 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "pipeline/state/pipeline_state.h"
+
+namespace hwsim::pipeline {
+
+inline constexpr int kMaxSamples = 32;
+
+/// The standard positions for 1, 2, 4, 8 and 16 samples (Direct3D 11 and Vulkan), and for 32 the set that
+/// four shifted 8x passes reach (techniques 1.4), in index order. Throws std::invalid_argument for other
+/// counts.
+std::span<const SamplePosition> standard_sample_positions(int samples);
+
+/// The standard positions for `samples`, then those for `positions` without the ones nearest to them. Samples
+/// out of the larger pattern lie worse: dragon at 4 of 16 has 45.3 dB by its samples alone there, 48.1 dB
+/// here. For 2 of 4, 4 of 8, and 4 or 8 of 16. Throws as above.
+std::vector<SamplePosition> coverage_positions(int samples, int positions);
+
+/// How passes of eight samples reach more (techniques 1.4): every layer has the same positions, squeezed into
+/// a part of the pixel, under a viewport of its own.
+struct MulticastPattern {
+  std::vector<SamplePosition> positions;  ///< of each layer
+  std::vector<ViewportShift> viewports;   ///< one a layer
+};
+/// For 16 or 32 samples. Throws std::invalid_argument for other counts.
+MulticastPattern multicast_pattern(int samples);
+
+/// Where the samples of all layers lie in the pixel, in order of layer and sample: against the viewports'
+/// shifts. For 32 samples these are the standard positions.
+std::vector<SamplePosition> effective_positions(const MulticastPattern& pattern);
+
+}  // namespace hwsim::pipeline
