@@ -37,7 +37,7 @@ constexpr const char* kLists =
     "sss_ppll:mode=or,theta_c=0.5,hl_px=16,early_exit=off,m=8,node_bytes=32,list_cap=64,capacity_nodes="
     "16000000";
 
-/// Of the tables of errors, and of those of flicker, where none is asked for.
+/// Scenes of the tables of errors, and of those of flicker, where none is asked for.
 constexpr const char* kCompared[] = {"none",
                                      "msaa4x",
                                      "msaa8x",

@@ -11,7 +11,7 @@ namespace hwsim::cli {
 /// What a budget can limit; `aa_` and `extra_` are relative to no anti-aliasing at all.
 struct Costs {
   double frame_ms = 0.0, aa_ms = 0.0, memory_mib = 0.0, extra_mib = 0.0, dram_mb = 0.0;
-  std::optional<std::array<double, 2>> interval_ms;  ///< of frame_ms
+  std::optional<std::array<double, 2>> interval_ms;  ///< interval of frame_ms
 };
 
 struct Limit {

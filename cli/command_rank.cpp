@@ -25,7 +25,7 @@ constexpr int kRegionSidePx = 48, kRegions = 4;
 struct Candidate {
   std::string technique;
   std::string verdict;
-  std::string reason;  ///< of an unsupported one
+  std::string reason;  ///< why an unsupported one cannot run
   bool pareto = false;
   Costs costs;
   std::string support;

@@ -19,7 +19,7 @@
 namespace hwsim::cli {
 namespace {
 
-constexpr size_t kMaxProblems = 20;  // of a thousand points with the same mistake
+constexpr size_t kMaxProblems = 20;  // a thousand points may have the same mistake
 
 struct Shard {
   size_t index = 0, count = 1;

@@ -20,7 +20,7 @@ struct ViewPlan {
   Resolution resolution;
   std::string camera = "0";
   int point_lights = 0;
-  double light_range = 0.15;  ///< of lights that are added, over the scene's diagonal
+  double light_range = 0.15;  ///< reach of lights that are added, as a part of the scene's diagonal
   algos::LightProfile lights = algos::LightProfile::scene;
   bool shadows = true;
   int shadow_map_px = 2048;

@@ -7,7 +7,7 @@ namespace hwsim::cli {
 
 struct PlotPoint {
   double x = 0.0, y = 0.0;
-  double low = 0.0, high = 0.0;  ///< of y; equal: no bar
+  double low = 0.0, high = 0.0;  ///< ends of the bar around y; equal: no bar
   std::string series;            ///< a color and an entry of the legend
   std::string label;             ///< shown when the pointer rests on it
   bool hollow = false;

@@ -20,7 +20,7 @@ using pipeline::Image;
 
 constexpr std::string_view kFrameKind = "frame", kImageKind = "image";
 constexpr std::uint64_t kFrameVersion = 1, kImageVersion = 1;
-constexpr std::size_t kKeptFrames = 4;  // of 1280x720: 30 MB each
+constexpr std::size_t kKeptFrames = 4;  // 30 MB each at 1280x720
 constexpr std::size_t kChannels = 4;
 
 std::vector<std::uint8_t> encode_frame(const std::string& key, const Emulation& emulation) {

@@ -20,7 +20,7 @@ struct FrameNeeds {
 
 struct EmulatedFrame {
   std::shared_ptr<const pipeline::Emulation> emulation;  ///< wall_s: what getting it took this time
-  bool from_cache = false;                               ///< of this process or of the disk
+  bool from_cache = false;  ///< whether it was kept by this process or on the disk
 };
 
 class TraceStore {
@@ -31,7 +31,7 @@ class TraceStore {
   };
   TraceStore(const Options& options, Log& log) : options_(options), log_(log) {}
 
-  /// Of `gpu` only features and limits matter. Throws InputError where the technique cannot run on it.
+  /// Only features and limits of `gpu` matter. Throws InputError where the technique cannot run on it.
   EmulatedFrame frame(SceneView& scene, const algos::TechniqueChoice& technique, const GpuConfig& gpu,
                       const FrameNeeds& needs, const ProgressFunction& progress);
 

@@ -12,8 +12,8 @@ namespace hwsim::cost_models {
 struct Statement {
   std::string papers;  ///< "all", or names of papers with blanks between, as `--paper` takes them
   std::string split;   ///< a split's name, or "counts"
-  std::string figure;  ///< of a split: mape_pct, median_ape_pct, kendall, coverage90_pct; of counts: mape_pct
-                       ///< (shaded samples), worst_pct (memory)
+  std::string figure;  ///< for a split mape_pct, median_ape_pct, kendall or coverage90_pct; for counts
+                       ///< mape_pct (shaded samples), worst_pct (memory)
   double low = 0.0, high = 0.0;
 };
 

@@ -8,7 +8,7 @@
 
 namespace hwsim::cost_models {
 
-/// Of a cell's passes, on the documented GPU.
+/// The work of a cell's passes, on the documented GPU.
 struct SimpleWork {
   double dram_bytes = 0.0;
   double shaded_samples = 0.0;

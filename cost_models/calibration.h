@@ -25,13 +25,13 @@ struct CalibratedParameter {
 struct Calibration {
   int version = 1;
   std::vector<CalibratedParameter> parameters;
-  std::vector<double> covariance;  ///< of the logarithms, row by row
+  std::vector<double> covariance;  ///< covariance of the logarithms, row by row
   double residual_log_sd = 0.0;
   std::map<std::string, double> quantile90;                 ///< by split
   std::map<std::string, std::set<std::string>> techniques;  ///< by GPU: those with fitted rows
   std::map<std::string, double> held_out_ms;                ///< by row: by the fit that did not see its scene
   std::set<std::string> gpu_keys;                           ///< that GPUs had when they were fitted
-  std::map<std::string, std::string> gpu_hashes;            ///< of each calibrated GPU: the values of these
+  std::map<std::string, std::string> gpu_hashes;  ///< for each calibrated GPU the hash of the values of these
 };
 
 Calibration make_calibration(const Experiment& experiment, const Validation& validation);

@@ -9,8 +9,8 @@ namespace hwsim::cost_models {
 namespace {
 
 constexpr double kStrongCorrelation = 0.9;
-constexpr double kBoundDistance = 1e-6;  // of the range, in ln(value)
-constexpr double kNullSpace = 1e-10;     // of the largest eigenvalue
+constexpr double kBoundDistance = 1e-6;  // as a part of the range, in ln(value)
+constexpr double kNullSpace = 1e-10;     // as a part of the largest eigenvalue
 
 std::vector<std::size_t> free_parameters(const Experiment& experiment, const std::vector<bool>& used,
                                          const std::vector<double>& log_values) {

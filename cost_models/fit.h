@@ -12,9 +12,9 @@ namespace hwsim::cost_models {
 
 struct FitOptions {
   int starts = 1;             ///< the first from the declared start, the others at random within the ranges
-  std::uint64_t seed = 1;     ///< of the random starts
+  std::uint64_t seed = 1;     ///< seed of the random starts
   int jobs = 1;               ///< the result does not depend on it
-  int max_iterations = 40;    ///< of each start
+  int max_iterations = 40;    ///< most iterations of each start
   bool convex_first = true;   ///< begin with a loss that sees far rows too
   double noise_log_sd = 0.1;  ///< a residual of this size costs as much as a parameter one prior sd away
   double robust_log = 0.2;    ///< residuals beyond this lose weight (Cauchy): rows that nothing explains
@@ -44,15 +44,16 @@ struct StartOutcome {
 
 struct Fit {
   std::vector<double> log_values;
-  std::vector<double> covariance;  ///< of them, row by row; zero for parameters that are fixed or at a bound
+  std::vector<double>
+      covariance;  ///< covariance of log_values, row by row; zero for parameters that are fixed or at a bound
   std::vector<Estimate> estimates;
   double residual_log_sd = 0.0;
   std::size_t fitted_values = 0, used_parameters = 0;
   double start_cost = 0.0, cost = 0.0;
   int iterations = 0;
   bool converged = false;
-  std::string message;                       ///< of the solver
-  double condition = 0.0;                    ///< of the Jacobian with columns of unit length, priors included
+  std::string message;     ///< what the solver said
+  double condition = 0.0;  ///< condition of the Jacobian with columns of unit length, priors included
   std::vector<CorrelatedPair> correlations;  ///< beyond 0.9
   std::vector<StartOutcome> starts;
 };

@@ -19,8 +19,8 @@ std::string_view scope_name(Scope scope);
 inline constexpr std::string_view kGeometryLoad = "geometry_load";  ///< work of draws, original over stand-in
 inline constexpr std::string_view kLightReach = "light_reach";      ///< the same of the point lights' work
 
-/// Of a GPU, but of no pass: what the papers' whole frames contain beside the passes (present, host). `run`
-/// predicts the passes alone.
+/// A parameter of a GPU, but of no pass: what the papers' whole frames contain beside the passes (present,
+/// host). `run` predicts the passes alone.
 inline constexpr std::string_view kPresent = "present_us";
 /// The name by which mapping files count it among the passes of a row; "*" includes it.
 inline constexpr std::string_view kPresentPass = "present";
@@ -30,7 +30,7 @@ struct Parameter {
   std::string member;  ///< GPU or scene; "all" for scope all
   std::string name;    ///< key of a GPU file, or a factor of a scene
   double start = 0.0, low = 0.0, high = 0.0;
-  double prior_log_sd = 0.0;  ///< of ln(value / start); 0: no prior
+  double prior_log_sd = 0.0;  ///< standard deviation of ln(value / start); 0: no prior
   std::string unit, meaning;
   std::string id() const { return member + "." + name; }
   bool concerns(const std::string& gpu, const std::string& scene) const;

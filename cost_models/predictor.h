@@ -8,7 +8,8 @@
 
 namespace hwsim::cost_models {
 
-/// Of one cell. Derivatives are those of ln(time) by ln(parameter), one for each parameter of the experiment.
+/// The prediction of one cell. Derivatives are those of ln(time) by ln(parameter), one for each parameter of
+/// the experiment.
 struct Prediction {
   double ms = 0.0;
   std::vector<double> gradient;
@@ -26,7 +27,8 @@ class Predictor {
   /// `log_values`: one for each parameter. The result does not depend on the number of threads.
   void evaluate(std::span<const double> log_values, bool gradients);
 
-  /// Of the last evaluation; ms is 0 for cells that no replay predicts, and for those that nobody wanted.
+  /// Predictions of the last evaluation; ms is 0 for cells that no replay predicts, and for those that nobody
+  /// wanted.
   const Prediction& operator[](std::size_t cell) const { return predictions_[cell]; }
 
   /// Start values of the experiment's parameters.
@@ -64,8 +66,8 @@ class Predictor {
   std::vector<Prediction> predictions_;
 };
 
-/// Of a frame alone: time of the passes that `patterns` names, on a GPU whose calibrated keys have the values
-/// of `gpu`; derivatives by ln(key).
+/// Predicts a frame alone: time of the passes that `patterns` names, on a GPU whose calibrated keys have the
+/// values of `gpu`; derivatives by ln(key).
 Prediction predict_frame(const WorkTrace& trace, const GpuConfig& gpu, const std::vector<std::string>& keys);
 
 }  // namespace hwsim::cost_models

@@ -11,10 +11,10 @@ namespace hwsim::cost_models {
 /// A row as printed. The columns are those of configs/published/README.md.
 struct PublishedRow {
   std::string table;  ///< the file, without ".csv"
-  int line = 0;       ///< of the file
+  int line = 0;       ///< line of the file
   std::string document, gpu, resolution, scene, view, technique, msaa, surfaces, lighting, pass, quantity;
   std::string printed;  ///< the value, digits kept
-  double value = 0.0;   ///< of it; 0 where it is no number
+  double value = 0.0;   ///< the text as a number; 0 where it is none
   std::string note;
   std::string id() const;  ///< "agaa_table1:12"
 };
@@ -27,7 +27,7 @@ struct RunSpec {
   std::string gpu;
   int width_px = 0, height_px = 0;
   int point_lights = 0;          ///< added to those of the scene
-  double light_range = 0.0;      ///< of these, over the scene's diagonal
+  double light_range = 0.0;      ///< reach of these lights, as a part of the scene's diagonal
   std::string lights = "scene";  ///< or SBAA's profiles: simple, complex
   bool shadows = true;
   std::string to_string() const;

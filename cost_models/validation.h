@@ -19,7 +19,7 @@ struct HeldOut {
   std::size_t cell = 0;
   std::string fold;  ///< what was left out: "dragon"; empty in sample
   double predicted_ms = 0.0;
-  double log_sd = 0.0;                 ///< of ln(time), from parameters and residuals
+  double log_sd = 0.0;                 ///< standard deviation of ln(time), from parameters and residuals
   double low_ms = 0.0, high_ms = 0.0;  ///< 90 % interval
 };
 
@@ -39,7 +39,7 @@ struct Figures {
 struct SplitResult {
   Split split = Split::in_sample;
   std::vector<HeldOut> cells;
-  double quantile90 = 0.0;  ///< of |ln(predicted / published)| / log_sd: the width of intervals of this kind
+  double quantile90 = 0.0;  ///< 90 % quantile of |ln(predicted / published)| / log_sd: intervals of this kind
   Figures figures;
   std::map<std::string, Figures> baselines;  ///< mean, bytes_over_bandwidth, linear_regression
 };

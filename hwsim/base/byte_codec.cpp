@@ -16,7 +16,7 @@ std::uint64_t kind_word(std::string_view kind) {
   return word;
 }
 
-/// Of everything before and behind it.
+/// The checksum of everything before and behind it.
 std::array<std::uint64_t, 2> check_sum(std::span<const std::uint8_t> start,
                                        std::span<const std::uint8_t> payload) {
   ContentHash hash;

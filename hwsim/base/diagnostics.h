@@ -30,7 +30,7 @@ struct Diagnostic {
   std::string help{};  ///< how to go on: a command, or what to change
 };
 
-/// Exit statuses of the program (docs/, `interfaces` section 2).
+/// Exit statuses of the program (docs/results.md#exit-status).
 enum class ExitStatus {
   done = 0,
   run_failed = 1,
@@ -53,7 +53,7 @@ class InputError : public std::runtime_error {
   ExitStatus status_;
 };
 
-/// The message in the shape of interfaces section 6, ending in a newline.
+/// The message in the shape of docs/architecture.md#errors, ending in a newline.
 std::string render(const Diagnostic& diagnostic, bool color);
 
 /// As many messages of one input are shown: the first causes. The others are counted in one more.

@@ -43,7 +43,7 @@ class LruStack {
   std::size_t lines_max_, count_ = 0, end_ = 0;
   std::vector<std::uint64_t> lines_;
   std::vector<std::uint64_t> present_;  ///< a bit a position
-  std::vector<std::int32_t> sums_;      ///< of the bits of each word, as a tree (Fenwick 1994)
+  std::vector<std::int32_t> sums_;      ///< sums of the bits of each word, as a tree (Fenwick 1994)
 };
 
 /// The part of requests beyond each size, of the part `reached` of all requests that a cache before it let

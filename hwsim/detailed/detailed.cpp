@@ -127,12 +127,12 @@ Windows plan_windows(const Timeline& line, double ratio) {
   const double with_warming_ns = w.expected_ns * (1.0 + 1.0 / kMeasuredStays),
                ends_ns = head_ns + 2.0 * (all_ns - tail_ns);
   w.count = std::max(kWindowsMin, std::floor((ratio * all_ns - ends_ns) / with_warming_ns));
-  constexpr double kWorthwhile = 0.8;  // of the pass; beyond it, all of it is simulated
+  constexpr double kWorthwhile = 0.8;  // part of the pass; beyond it, all of it is simulated
   if (w.count * with_warming_ns + ends_ns > kWorthwhile * all_ns) w.count = 0.0;
   return w;
 }
 
-/// Of equally probable places, each with the ratio of the time there to what was expected.
+/// Takes equally probable places, each with the ratio of the time there to what was expected.
 struct MeanRatio {
   std::vector<double> ratios;
   double value() const {

@@ -30,7 +30,7 @@ class Dram {
     std::vector<std::uint64_t> rows;
     std::size_t oldest = 0;
     explicit Bank(int queue_rows) : rows(static_cast<std::size_t>(queue_rows), ~std::uint64_t{0}) {}
-    double ready_ns = 0.0;        ///< of the open row
+    double ready_ns = 0.0;        ///< when the open row is ready
     Calendar activations{512.0};  ///< one takes a row cycle
   };
   struct Channel {

@@ -41,8 +41,8 @@ const MissCurve& curve_of(const ReuseProfile& reuse, Stream stream) {
   }
 }
 
-/// Of the requests that reach L2, those beyond each size. First reads of a cleared target are none of DRAM's
-/// business.
+/// The part of the requests that reach L2 beyond each size. First reads of a cleared target are none of
+/// DRAM's business.
 Survival beyond_l2(const PassWork& pass, const MissCurve& curve, Stream stream, bool write, double reached) {
   if (write) return survival(curve.write_bytes, curve.requested_write_bytes, reached);
   std::array<std::uint64_t, kCacheSizes> bytes = curve.read_bytes;
@@ -131,7 +131,7 @@ bool Machine::enter(std::uint64_t packet) {
     dispatch(chunk, core, start);
     return true;
   }
-  // Of a chunk that shades, only subgroups have work behind the cores.
+  // In a chunk that shades, only subgroups have work behind the cores.
   const Leaving out = chunk.subgroups > 0.0 ? Leaving{ready, ready} : finish(chunk, ready);
   dispatched_ns_ = std::max(dispatched_ns_, out.accepted_ns);
   front_done_.back()[slot] = out.accepted_ns;

@@ -113,7 +113,8 @@ class Machine {
   Survival l1_survival_;
 
   std::array<double, kFrontUnits.size()> front_free_{};
-  std::array<Ring, kFrontUnits.size() + 1> front_done_{};  ///< of the last packets; the last: dispatched
+  std::array<Ring, kFrontUnits.size() + 1>
+      front_done_{};  ///< when the last packets left each unit; the last ring: when they were dispatched
   Ring leave_done_{};
   std::uint64_t next_ = 0;  ///< packet
   std::uint64_t entered_ = 0, finished_ = 0;

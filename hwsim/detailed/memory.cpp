@@ -94,7 +94,7 @@ double MemorySystem::near_lines() const {
   return std::min(dram_.reordered_lines(), static_cast<double>(l2_.lines()) / 4.0);
 }
 
-// Of more than what fills L2 twice only the last remain to be seen. All in turn.
+// Only the last remain to be seen of more than what fills L2 twice. All in turn.
 void MemorySystem::pass_by(const std::vector<Passing>& accesses) {
   double all = 0.0;
   for (const Passing& p : accesses) all += p.far_accesses;

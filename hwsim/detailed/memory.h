@@ -50,7 +50,8 @@ class MemorySystem {
     const Survival* survival;
     double run_lines, far_accesses;
     bool write;
-    double written_ratio;  ///< of reads: the line is written soon after, by an access that was left out
+    double written_ratio;  ///< part of the reads whose line is written soon after, by an access that was left
+                           ///< out
   };
   double near_lines() const;
   /// L2 and the clients' memory of their lines after these; nothing is moved, no time passes.

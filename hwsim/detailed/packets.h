@@ -11,7 +11,8 @@ namespace hwsim {
 
 /// What a subgroup does in the cores, all of them of one chunk alike.
 struct SubgroupWork {
-  double alu_ns = 0.0, sfu_ns = 0.0, memory_pipe_ns = 0.0, atomic_ns = 0.0, tex_ns = 0.0;  ///< of one core
+  double alu_ns = 0.0, sfu_ns = 0.0, memory_pipe_ns = 0.0, atomic_ns = 0.0,
+         tex_ns = 0.0;  ///< times of one core
   double alu_chain_ns = 0.0;
   double memory_phases = 0.0;
   double l1_lines = 0.0;       ///< texture lines looked up in L1
@@ -24,10 +25,11 @@ struct ChunkPackets {
   double leaving_packets =
       1.0;                ///< that the ROPs' work of a leaving one stands for: only subgroups bring them any
   double resident = 1.0;  ///< subgroups of this kind that a core holds
-  std::array<double, kUnitCount> service_ns{};  ///< of one packet, units that all packets go through
+  std::array<double, kUnitCount> service_ns{};  ///< times of one packet in units that all packets go through
   SubgroupWork work;
-  double expected_ns = 0.0, expected_bytes = 0.0;  ///< of a packet, by the closed forms: what samples weigh
-  double in_flight = 1.0;  ///< packets of this kind that the machine holds at once in a steady state
+  double expected_ns = 0.0,
+         expected_bytes = 0.0;  ///< time and bytes of a packet by the closed forms: what samples weigh
+  double in_flight = 1.0;       ///< packets of this kind that the machine holds at once in a steady state
   StreamBytesOf<double> l2, direct;  ///< bytes of a packet that L2 is asked for, and that pass it by
 };
 

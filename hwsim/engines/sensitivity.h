@@ -24,7 +24,7 @@ std::vector<Sensitivity> sensitivities(const WorkTrace& trace, const GpuConfig& 
 
 struct UnitHeadroom {
   Unit unit = Unit::fe;
-  double time_ns = 0.0;  ///< of the frame, if this unit took no time: the most that a faster one can bring
+  double time_ns = 0.0;  ///< time of the frame if this unit took none: the most that a faster one can bring
 };
 
 /// Units that have work, the largest gain first.

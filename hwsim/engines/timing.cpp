@@ -14,7 +14,7 @@ constexpr std::array<std::string_view, kUnitCount> kUnitNames = {
     "fe", "ia", "vs", "setup", "raster", "hiz", "zrop", "shader", "tex", "crop", "resolve", "l2", "dram"};
 constexpr std::array<std::string_view, kStreamCount> kStreamNames = {
     "depth", "color", "texture", "storage", "vertex", "index", "constant", "shader", "other"};
-constexpr double kTolerance = 1e-9;  // of sums of doubles against each other, relative
+constexpr double kTolerance = 1e-9;  // relative difference of sums of doubles
 
 PassTiming report(const PassWork& pass, const PassTime<double>& time) {
   PassTiming timing;

@@ -48,7 +48,7 @@ struct PassTiming {
   std::array<double, kUnitCount> busy_ns{};    ///< time a unit would need alone
   std::array<double, kUnitCount> sol_ratio{};  ///< busy / pass time, 0..1
   std::array<double, kUnitCount> stack_ns{};   ///< exclusive share of the pass time; sums to time_ns
-  double overhead_ns = 0.0;  ///< of the time, fixed cost: launch, drain, barrier (part of the stack of fe)
+  double overhead_ns = 0.0;  ///< fixed part of the time: launch, drain, barrier (in the stack of fe)
   Unit limiter = Unit::fe;   ///< the unit with the largest share
   std::optional<std::array<double, 2>> sampling_interval_ns;  ///< 90 %, where a sample was simulated
   StreamBytes dram_bytes;
@@ -67,7 +67,7 @@ struct FrameTiming {
 FrameTiming time_frame(const WorkTrace& trace, const GpuConfig& gpu, Engine engine,
                        const TimingOptions& options = {});
 
-/// The invariants of interfaces section 1 (bytes/time <= peak, sums); empty when all hold.
+/// The invariants of docs/glossary.md#invariants (bytes/time <= peak, sums); empty when all hold.
 std::vector<std::string> check_timing(const FrameTiming& timing, const WorkTrace& trace,
                                       const GpuConfig& gpu);
 

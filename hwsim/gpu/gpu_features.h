@@ -22,10 +22,10 @@ struct GpuFeatures {
 
 struct FunctionalConfig {
   int post_transform_cache_entries = 32;  ///< FIFO
-  int gs_max_scalars = 1024;              ///< of all vertices that one geometry shader invocation emits
-  bool late_z_on_discard = true;          ///< depth written after the shader where it can discard (gpus 10.1)
-  bool hierarchical_z = true;             ///< off: every covered sample is tested one by one
-  int max_image_px = 16384;               ///< largest width or height of a render target
+  int gs_max_scalars = 1024;      ///< 32-bit values of all vertices that one geometry shader invocation emits
+  bool late_z_on_discard = true;  ///< where shaders discard: docs/hardware_sources.md#early-depth
+  bool hierarchical_z = true;     ///< off: every covered sample is tested one by one
+  int max_image_px = 16384;       ///< largest width or height of a render target
 };
 
 }  // namespace hwsim

@@ -27,7 +27,7 @@ struct GpuRates {
       same_address_atomic_ns, gs_output_word_ns;
   T bilinear_probe_ns, fetch_64bit_cost, fetch_128bit_cost, l1_fill_byte_ns, l1_bytes;
   std::array<T, kRateClassCount> color_px_ns,
-      blended_px_ns;                               ///< gpus section 0, rule 1: min(raster, export, ROP)
+      blended_px_ns;  ///< docs/hardware_sources.md#rules, 1: min(raster, export, ROP)
   std::array<T, kRateClassCount> color_sample_ns;  ///< multisample writes, the ROPs alone
   T resolve_sample_ns;
   T l2_byte_ns, dram_byte_ns, dram_turn_ns;

@@ -1,6 +1,5 @@
 #pragma once
-// Bytes of compressed depth tiles and color pixels, from their counted forms (docs/hardware_model.md,
-// "Compression"; gpus section 6, techniques section 9).
+// Bytes of compressed depth tiles and color pixels, from their counted forms (docs/compression.md).
 #include <algorithm>
 #include <array>
 #include <cmath>

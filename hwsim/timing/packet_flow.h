@@ -18,7 +18,7 @@ struct FlowTable {
   std::vector<T>
       latency_ns;  ///< in the same order: between the end of a packet here and its next unit, or its end
   std::vector<T> room_packets;  ///< in the same order: how far the unit may run ahead of the next one
-  std::vector<double> packets;  ///< of each chunk, at least 1
+  std::vector<double> packets;  ///< packets of each chunk, at least 1
 };
 
 template <class T>

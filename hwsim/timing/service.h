@@ -66,7 +66,8 @@ T vs_ns(const PassCounters& c, const GpuRates<T>& r) {
 }
 
 /// Subgroups that a core holds at once: its registers, shared by those of the chunk's invocations, and the
-/// group memory that they reserve (techniques 3.8: four of SBAA's analysis on a SIMD of 32 KiB).
+/// group memory that they reserve (docs/techniques/sbaa.md#group-memory: four of SBAA's analysis on a SIMD of
+/// 32 KiB).
 template <class T>
 T resident_subgroups(const PassCounters& c, const PassWork& pass, const GpuRates<T>& r) {
   T most = r.subgroups_max;
@@ -180,8 +181,8 @@ T tex_ns(const PassCounters& c, const T& l1_fill_bytes, const GpuRates<T>& r) {
   return larger(tex_pipe_ns(c, r), T(l1_fill_bytes * r.l1_fill_byte_ns));
 }
 
-/// gpus section 5: rop time = max(pixels / pixel rate, uncompressed samples / sample rate), summed over the
-/// targets.
+/// docs/hardware_sources.md#rops: rop time = max(pixels / pixel rate, uncompressed samples / sample rate),
+/// summed over the targets.
 template <class T>
 T crop_ns(const PassCounters& c, const PassWork& pass, const GpuRates<T>& r) {
   double all_samples = 0.0;

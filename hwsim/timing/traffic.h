@@ -60,7 +60,7 @@ struct TrafficModel {
   /// behind it L2 decides.
   StreamBytesOf<T> reaches_l2;
   StreamBytesOf<T> tile_chunk;  ///< tile memory's loads and stores: DRAM bytes of each chunk
-  double tile_px = 0.0;         ///< of its screen tiles
+  double tile_px = 0.0;         ///< pixels of its screen tiles
   T l1_asked{1.0};              ///< texture bytes as whole lines that L1 is asked for
   T l1_fill{1.0};               ///< texture bytes beyond L1
 };
@@ -240,7 +240,8 @@ struct ChunkTraffic {
   T storage_read_bytes{0.0};
 };
 
-/// Rings in memory before and behind geometry shaders, each written and read (gpus section 4).
+/// Rings in memory before and behind geometry shaders, each written and read
+/// (docs/hardware_sources.md#geometry).
 inline double ring_bytes(const PassCounters& c, bool gs_on_chip) {
   return gs_on_chip ? 0.0 : static_cast<double>(c.gs.input_bytes + c.gs.output_bytes);
 }

@@ -41,13 +41,14 @@ enum class Format : std::uint8_t {
 };
 inline constexpr Format kLastFormat = Format::s8_uint;
 
-/// The class by which ROP, export and texture rates are tabulated (gpus section 5).
+/// The class by which ROP, export and texture rates are tabulated (docs/hardware_sources.md#rops).
 enum class RateClass : std::uint8_t { bits32, srgb32, half4_64, float1_32, bits64, float4_128, depth };
 
 struct FormatInfo {
   std::string_view name;
   std::uint8_t channels;
-  std::uint8_t bytes;  ///< per element, as allocated; d32_float_s8 takes 8 in practice (techniques 0.6)
+  std::uint8_t bytes;  ///< per element, as allocated; d32_float_s8 takes 8 in practice
+                       ///< (docs/techniques/conventions.md#formats)
   RateClass rate_class;
   bool is_float;
   bool is_integer;  ///< no blending, no filtering, no resolve

@@ -20,7 +20,8 @@ struct MissCurve {
   std::uint64_t requested_read_bytes = 0;
   std::uint64_t requested_write_bytes = 0;
   std::array<std::uint64_t, kCacheSizes> read_bytes{};
-  std::array<std::uint64_t, kCacheSizes> first_read_bytes{};  ///< of these, for a block's first stay
+  std::array<std::uint64_t, kCacheSizes>
+      first_read_bytes{};  ///< the bytes among these that belong to a block's first stay
   std::array<std::uint64_t, kCacheSizes> write_bytes{};
   /// How often a block came in and was read, or left and had been written: bytes a stay decide what
   /// compression saves.

@@ -41,7 +41,7 @@ struct PassWork {
   bool color_cleared_before = false;  ///< its color targets were: likewise
   bool source_in_tile = false;        ///< a resolve of what the pass just before it drew
   std::vector<ColorTargetWork> color_targets;
-  int group_memory_lane_bytes = 0;  ///< of a compute group, divided by its invocations
+  int group_memory_lane_bytes = 0;  ///< group memory of a compute group, divided by its invocations
   int attribute_scalars = 0;        ///< 32-bit values that the rasterizer interpolates for each fragment
   ReuseProfile reuse;               ///< what caches of any size let through
   std::vector<PassCounters> chunks;
@@ -52,8 +52,8 @@ struct WorkTrace {
   std::string technique;
   int width_px = 0;
   int height_px = 0;
-  std::uint64_t peak_memory_bytes = 0;       ///< of attachments and buffers, by lifetime
-  std::uint64_t allocated_memory_bytes = 0;  ///< of all of them, none in another one's memory
+  std::uint64_t peak_memory_bytes = 0;       ///< most bytes of attachments and buffers that live at once
+  std::uint64_t allocated_memory_bytes = 0;  ///< bytes of all of them, none in another one's memory
   std::vector<PassWork> passes;
 };
 

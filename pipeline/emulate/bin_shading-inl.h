@@ -251,7 +251,8 @@ class BinShading : protected BinColor {
     write_color(batch, w_.block.data(), w_.quad_in_block.data(), 0, samples_);
   }
 
-  // One invocation for each sample index that is covered in a pixel of the quad (techniques 0.3.5).
+  // One invocation for each sample index that is covered in a pixel of the quad
+  // (docs/techniques/conventions.md#rasterization).
   void shade_sample(int s) {
     FragmentBatch& batch = w_.batch;
     FragmentBatch& part = w_.sample_batch;

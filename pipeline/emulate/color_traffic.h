@@ -1,6 +1,6 @@
 #pragma once
 // Multisampled color tiles between the color unit and memory, counted by the colors that their pixels hold:
-// what constant-region and fragment-mask compression depend on (techniques 9.4, gpus section 6).
+// what constant-region and fragment-mask compression depend on (docs/compression.md#color).
 #include <array>
 #include <span>
 

@@ -75,7 +75,8 @@ HWY_INLINE Vec4<LaneF> blend(const BlendState& state, const Vec4<LaneF>& src, co
 }
 
 /// The color samples that raster samples [first, last) write: with fewer color than raster samples, color
-/// sample j is written iff one of raster samples [j ratio, (j + 1) ratio) is set (techniques 0.4).
+/// sample j is written iff one of raster samples [j ratio, (j + 1) ratio) is set
+/// (docs/techniques/conventions.md#coverage).
 struct ColorSamples {
   int ratio, first, last;
   int begin, end;

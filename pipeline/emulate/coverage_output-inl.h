@@ -1,5 +1,6 @@
-// What a shader makes of its fragments' coverage: sample masks and alpha to coverage (techniques 0.4, 1.7).
-// Per-target include guard.
+// What a shader makes of its fragments' coverage: sample masks and alpha to coverage
+// (docs/techniques/conventions.md#coverage, docs/techniques/forward.md#alpha-to-coverage). Per-target include
+// guard.
 #include "pipeline/emulate/pass_context.h"
 #include "pipeline/raster/coverage-inl.h"
 #include "pipeline/simd/lanes-inl.h"

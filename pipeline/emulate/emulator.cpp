@@ -153,7 +153,8 @@ class FrameRunner {
     return depth.plane_count;
   }
 
-  /// Planes were written for other sample positions: only their samples still hold (techniques 9.1).
+  /// Planes were written for other sample positions: only their samples still hold
+  /// (docs/compression.md#depth).
   void place_planes(GpuImage& depth, std::span<const SamplePosition> positions) const {
     const auto same = [](SamplePosition a, SamplePosition b) { return a.x == b.x && a.y == b.y; };
     if (std::equal(positions.begin(), positions.end(), depth.plane_positions.begin(),

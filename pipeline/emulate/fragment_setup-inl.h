@@ -50,8 +50,9 @@ HWY_INLINE void lane_coverage(const QuadSamples& samples, int count, std::uint32
   }
 }
 
-/// Attribute location of the centroid rule (techniques 0.3.6): the center where all samples are covered or
-/// none is, else the first covered sample in index order. Depth tests don't move it.
+/// Attribute location of the centroid rule (docs/techniques/conventions.md#rasterization): the center where
+/// all samples are covered or none is, else the first covered sample in index order. Depth tests don't move
+/// it.
 inline void centroid_offsets(const std::uint32_t* coverage, std::span<const SamplePosition> positions,
                              float* dx, float* dy) {
   const std::uint32_t all = positions.size() == 32 ? 0xffffffffu : (1u << positions.size()) - 1;

@@ -84,7 +84,7 @@ void run_bin(const PassContext& context, const Segment& segment, int bin, BinWor
 /// Shades one screen bin of a full-screen pass.
 void run_full_screen_bin(const PassContext& context, int bin, BinWorker& worker);
 
-/// Whether depth and stencil are tested after the shader (techniques 0.4, gpus 10.1).
+/// Whether depth and stencil are tested after the shader (docs/hardware_sources.md#early-depth).
 bool tests_late(const PipelineState& state, const FragmentProgram* program);
 /// Of those that are: whether a first test, without writes, comes before the shader.
 bool rejects_early(const PipelineState& state, const FragmentProgram* program);

@@ -276,7 +276,8 @@ class MeshBuilder {
     return cluster;
   }
 
-  /// Files hold a wire's center line (techniques 6); everything but wire anti-aliasing draws its surface.
+  /// Files hold a wire's center line (docs/techniques/wire.md); everything but wire anti-aliasing draws its
+  /// surface.
   void place_wire_surfaces() {
     for (std::size_t i = 0; i < mesh_.radius.size(); ++i)
       mesh_.positions[i] += mesh_.normals[i] * mesh_.radius[i];

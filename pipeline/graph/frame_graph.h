@@ -38,7 +38,7 @@ struct ImageDesc {
   int samples = 1;
   int layers = 1;  ///< of an array image; shaders read sample s of layer l as sample l * samples + s
   /// Color: positions of a pixel that name one of its samples as theirs, in a map beside the texels (CSAA,
-  /// EQAA; techniques 1.6). More than `samples`; 0: no map.
+  /// EQAA; docs/techniques/forward.md#coverage-sampling). More than `samples`; 0: no map.
   int coverage_samples = 0;
 };
 struct BufferDesc {
@@ -105,8 +105,9 @@ struct Pass {
   int coverage_samples = 0;   ///< positions at which coverage is found, the first `samples` of which have
                               ///< depth and color (ImageDesc::coverage_samples); 0: `samples`
   bool drop_orphans = false;  ///< see memory/coverage_map.h
-  /// Viewport multicast (techniques 1.4): vertices are shaded once, and every primitive is rasterized into
-  /// layer l of the attachments under viewport l. Empty: one viewport, and attachments of one layer.
+  /// Viewport multicast (docs/techniques/forward.md#multicast): vertices are shaded once, and every primitive
+  /// is rasterized into layer l of the attachments under viewport l. Empty: one viewport, and attachments of
+  /// one layer.
   std::vector<ViewportShift> viewports;
 
   std::vector<ImageId> color;  ///< attachments of draw and full-screen passes

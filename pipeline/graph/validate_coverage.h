@@ -1,5 +1,5 @@
 #pragma once
-// What a graph with coverage maps (CSAA, EQAA; techniques 1.6) must obey.
+// What a graph with coverage maps (CSAA, EQAA; docs/techniques/forward.md#coverage-sampling) must obey.
 #include <string>
 #include <vector>
 

@@ -1,14 +1,16 @@
 #pragma once
-// Coverage at more positions than a pixel has samples (CSAA, EQAA; techniques 1.6). The first positions are
-// those of the samples, with depth and color of their own; every further one names the sample whose color it
-// has, or none. The rule is ours, no vendor documents one.
+// Coverage at more positions than a pixel has samples (CSAA, EQAA;
+// docs/techniques/forward.md#coverage-sampling). The first positions are those of the samples, with depth and
+// color of their own; every further one names the sample whose color it has, or none. The rule is ours, no
+// vendor documents one.
 //
 // A fragment that passes the depth test at some sample takes, in the name of the lowest of these samples, the
 // further positions that it covers, where it wins against the depth of the sample that they name. Positions
 // that named an overwritten sample and that the fragment does not cover are orphans: they follow their
 // fragment to another sample that it still holds (the samples' own entries say which belong together), and
-// name none where it holds none. `drop_orphans`: they name none at once, as techniques 1.6 has it; along a
-// silhouette the later of two surfaces then weighs too much, for the earlier one loses positions.
+// name none where it holds none. `drop_orphans`: they name none at once, as
+// docs/techniques/forward.md#coverage-sampling has it; along a silhouette the later of two surfaces then
+// weighs too much, for the earlier one loses positions.
 //
 // A fragment without any sample has no color here; positions where it wins name none. They stand for what the
 // nearest sample shows, in the depth test and in the resolve: most such fragments are small triangles of a

@@ -1,9 +1,9 @@
 #pragma once
 // Depth of an 8x8 tile as plane equations: what plane compression stores, and what the emulator computes with
-// (Hasselgren & Akenine-Moeller 2006; techniques 9.1). A tile starts as one constant plane, the clear value.
-// Each triangle that passes somewhere takes a slot, and samples of other planes move to it; planes without
-// samples leave. A tile that needs more slots is expanded into its samples, and stays so until it is cleared
-// or one plane covers it whole.
+// (Hasselgren & Akenine-Moeller 2006; docs/compression.md#depth). A tile starts as one constant plane, the
+// clear value. Each triangle that passes somewhere takes a slot, and samples of other planes move to it;
+// planes without samples leave. A tile that needs more slots is expanded into its samples, and stays so until
+// it is cleared or one plane covers it whole.
 #include <cstdint>
 
 #include "pipeline/raster/triangle.h"

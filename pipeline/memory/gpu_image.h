@@ -34,7 +34,8 @@ struct GpuImage {
   std::vector<std::uint32_t>
       touched_chunk;  ///< of each tile: 1 + the last chunk of the current pass that used it
 
-  // Multisampled color: what compression would see, and what the emulator need not store (techniques 9.4).
+  // Multisampled color: what compression would see, and what the emulator need not store
+  // (docs/compression.md#color).
   std::vector<std::uint64_t> single_lanes;  ///< of each tile: pixels with one color at all samples
   std::vector<std::uint64_t> double_lanes;  ///< pixels with two colors
   std::vector<std::uint64_t> second_color;  ///< of each sample: pixels of double_lanes that hold the second

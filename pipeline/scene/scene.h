@@ -49,9 +49,9 @@ struct TextureRef {
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 enum class ShadingModel : std::uint8_t { blinn_phong, ggx, unlit, phong };
 
-/// glTF metallic-roughness, from which both shading models derive their parameters (techniques 0.5):
-/// alpha = roughness^2, exponent = 2/alpha^2 - 2, k_s = lerp(0.04, base, metallic), albedo = base (1 -
-/// metallic).
+/// glTF metallic-roughness, from which both shading models derive their parameters
+/// (docs/techniques/conventions.md#shading-models): alpha = roughness^2, exponent = 2/alpha^2 - 2, k_s =
+/// lerp(0.04, base, metallic), albedo = base (1 - metallic).
 struct Material {
   std::string name;
   glm::vec4 base_color{1.0f};
@@ -109,8 +109,9 @@ struct Instance {
 
 enum class LightKind : std::uint8_t { directional, point, spot };
 
-/// Directional: illuminance in lux scaled so that 1 lights a white Lambert surface to 1 (no 1/pi, techniques
-/// 0.5). Point and spot: the same at one meter, times 1/d^2 windowed to zero at range_m.
+/// Directional: illuminance in lux scaled so that 1 lights a white Lambert surface to 1 (no 1/pi,
+/// docs/techniques/conventions.md#shading-models). Point and spot: the same at one meter, times 1/d^2
+/// windowed to zero at range_m.
 struct Light {
   LightKind kind = LightKind::directional;
   glm::vec3 color{1.0f};  ///< color times intensity

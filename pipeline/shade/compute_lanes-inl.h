@@ -121,7 +121,7 @@ class ComputeLanes : public LaneFlow {
   }
 
   /// The tile of the wave's pixels, 8x8, as compressed (Pass::depth_planes). Charged once a wave: the planes,
-  /// and the number of its plane for each sample, in pieces of 32 bytes (techniques 9.1).
+  /// and the number of its plane for each sample, in pieces of 32 bytes (docs/compression.md#depth).
   int tile_plane_count() {
     const DepthPlaneView& view = *group_.resources->depth_planes;
     const int count = view.plane_count[static_cast<std::size_t>(tile())];

@@ -1,5 +1,6 @@
-// Shading models (techniques 0.5) and direct lighting, for every lane type: the emulator's registers, the
-// counting type, and the scalar of the ray-traced reference. Per-target include guard, see simd/lanes-inl.h.
+// Shading models (docs/techniques/conventions.md#shading-models) and direct lighting, for every lane type:
+// the emulator's registers, the counting type, and the scalar of the ray-traced reference. Per-target include
+// guard, see simd/lanes-inl.h.
 #include <hwy/highway.h>
 
 #include "pipeline/shade/lighting.h"
@@ -67,8 +68,8 @@ Vec3<F> phong(const Surface<F>& s, const Vec3<F>& l, F n_dot_l) {
   return s.albedo * n_dot_l + s.specular * select(n_dot_l > F(0.0f), lobe, F(0.0f));
 }
 
-/// Smith separable G2, Schlick F; no 1/pi on the diffuse part (the lights' scale, techniques 0.5), so pi on
-/// the other.
+/// Smith separable G2, Schlick F; no 1/pi on the diffuse part (the lights' scale,
+/// docs/techniques/conventions.md#shading-models), so pi on the other.
 template <class F>
 Vec3<F> ggx(const Surface<F>& s, const Vec3<F>& l, F n_dot_l) {
   const Vec3<F> h = normalize(l + s.to_eye);

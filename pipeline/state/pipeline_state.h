@@ -74,7 +74,7 @@ struct BlendState {
   std::uint8_t write_mask = 0xf;
 };
 
-/// A sample's offset from the pixel center in 1/16 pixel, -8..7 (techniques 0.2).
+/// A sample's offset from the pixel center in 1/16 pixel, -8..7 (docs/techniques/conventions.md#samples).
 struct SamplePosition {
   std::int8_t x = 0;
   std::int8_t y = 0;
@@ -90,7 +90,8 @@ struct RasterState {
   std::vector<SamplePosition> sample_positions;  ///< empty: the standard pattern of the sample count
 };
 
-/// How a fragment's coverage reaches its shader and leaves it (techniques 0.4, 1.7).
+/// How a fragment's coverage reaches its shader and leaves it (docs/techniques/conventions.md#coverage,
+/// docs/techniques/forward.md#alpha-to-coverage).
 struct CoverageState {
   bool post_depth =
       false;  ///< shaders read what early tests left, which must be forced; else the primitive's

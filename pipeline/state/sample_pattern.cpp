@@ -30,7 +30,7 @@ constexpr std::array<P, 16> k16 = {{{1, 1},
                                     {-7, -8}}};
 
 // Layer l = (i, j) of four 8x passes samples at base + (8 i, 8 j), base being the 8x pattern squeezed into
-// the top left quarter (techniques 1.4).
+// the top left quarter (docs/techniques/forward.md#multicast).
 constexpr std::array<P, 32> make_32() {
   std::array<P, 32> positions{};
   for (int layer = 0; layer < 4; ++layer) {

@@ -9,8 +9,8 @@ namespace hwsim::pipeline {
 inline constexpr int kMaxSamples = 32;
 
 /// The standard positions for 1, 2, 4, 8 and 16 samples (Direct3D 11 and Vulkan), and for 32 the set that
-/// four shifted 8x passes reach (techniques 1.4), in index order. Throws std::invalid_argument for other
-/// counts.
+/// four shifted 8x passes reach (docs/techniques/forward.md#multicast), in index order. Throws
+/// std::invalid_argument for other counts.
 std::span<const SamplePosition> standard_sample_positions(int samples);
 
 /// The standard positions for `samples`, then those for `positions` without the ones nearest to them. Samples
@@ -18,8 +18,8 @@ std::span<const SamplePosition> standard_sample_positions(int samples);
 /// here. For 2 of 4, 4 of 8, and 4 or 8 of 16. Throws as above.
 std::vector<SamplePosition> coverage_positions(int samples, int positions);
 
-/// How passes of eight samples reach more (techniques 1.4): every layer has the same positions, squeezed into
-/// a part of the pixel, under a viewport of its own.
+/// How passes of eight samples reach more (docs/techniques/forward.md#multicast): every layer has the same
+/// positions, squeezed into a part of the pixel, under a viewport of its own.
 struct MulticastPattern {
   std::vector<SamplePosition> positions;  ///< of each layer
   std::vector<ViewportShift> viewports;   ///< one a layer

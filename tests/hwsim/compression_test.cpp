@@ -64,7 +64,7 @@ PassWork depth_pass(int samples) {
 
 TEST(DepthTraffic, IsTheBytesOfTheCountedFormsInEveryEngine) {
   GpuConfig gpu = sample_gpu();
-  gpu.l2_size_kib = 16.0;  // of the event-driven engine: too small to keep a tile
+  gpu.l2_size_kib = 16.0;  // the event-driven engine's L2 is too small to keep a tile
   for (const int samples : {1, 8}) {
     const double two_planes = samples == 1 ? 32.0 : 96.0, stays = kChunks * kTiles;
     for (const Engine engine : {Engine::roofline, Engine::queue, Engine::detailed}) {

@@ -16,7 +16,7 @@ struct UnitCase {
   const char* name;
   PassKind kind;
   Fill fill;
-  double ns;  ///< of a chunk, from the literal rates of sample_gpu
+  double ns;  ///< time of a chunk, from the literal rates of sample_gpu
   int raster_samples = 1;
 };
 

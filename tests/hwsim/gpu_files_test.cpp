@@ -97,7 +97,7 @@ TEST(ShippedGpus, FillReachesTheDocumentedPixelsPerClock) {
   const struct {
     const char* id;
     Format format;
-    double px_per_clk;  // fact sheet, section 5
+    double px_per_clk;  // docs/hardware_sources.md#rops
   } cases[] = {{"gtx470", Format::rgba8_unorm, 28},  {"hd5870", Format::rgba8_unorm, 32},
                {"hd5870", Format::rgba16_float, 32}, {"gtx980", Format::rgba8_unorm, 64},
                {"gtx980", Format::rgba16_float, 32}, {"gtx980", Format::rgba32_float, 16},

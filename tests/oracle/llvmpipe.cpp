@@ -128,7 +128,7 @@ class DeviceMesh {
 
 using DeviceMeshes = std::vector<std::unique_ptr<DeviceMesh>>;
 
-// Of the viewport's origin and size, in pixels.
+// Takes the viewport's origin and size, in pixels.
 struct Viewport {
   float x, y, width, height;
 };

@@ -1,5 +1,5 @@
-// Coverage at more positions than samples (techniques 1.6): memory, maps by hand, and pictures against
-// multisampling at all positions.
+// Coverage at more positions than samples (docs/techniques/forward.md#coverage-sampling): memory, maps by
+// hand, and pictures against multisampling at all positions.
 #include "pipeline/memory/coverage_map.h"
 
 #include <gtest/gtest.h>

@@ -20,7 +20,7 @@ namespace {
 
 using FormCounts = std::array<std::uint64_t, kDepthTileForms>;
 
-/// The bytes that techniques 9.1 gives each form, with 20 for a plane.
+/// The bytes that docs/compression.md#depth gives each form, with 20 for a plane.
 std::size_t bytes_of(DepthTileForm form, const GpuImage& image) {
   const auto samples = static_cast<std::size_t>(image.samples * kBlockLanes);
   switch (form) {

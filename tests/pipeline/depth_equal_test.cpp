@@ -15,7 +15,7 @@ namespace hwsim::pipeline {
 namespace {
 
 struct Counts {
-  std::vector<float> passed, depth;  // of each sample
+  std::vector<float> passed, depth;  // one value for each sample
   std::uint64_t samples_passed = 0, killed_tiles = 0;
 };
 

@@ -109,7 +109,7 @@ TEST(FrameGraph, SaysWhatTileMemoryLoadsAndKeeps) {
   EXPECT_FALSE(resolves_from_tile(graph, compiled, 4));
 }
 
-// The multisampled images of techniques 1.3 at 1280x720.
+// The multisampled images of docs/techniques/forward.md#multisampling at 1280x720.
 TEST(FrameGraph, SumsTheMemoryOfMultisampling) {
   for (const int samples : {2, 4, 8}) {
     FrameGraph graph(one_triangle(), 1280, 720);

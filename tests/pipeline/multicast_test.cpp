@@ -1,5 +1,5 @@
 // Layers of eight samples under shifted viewports against one rasterization at all their positions: the same
-// coverage and depth, bit for bit (techniques 1.4).
+// coverage and depth, bit for bit (docs/techniques/forward.md#multicast).
 #include <gtest/gtest.h>
 
 #include <random>

@@ -49,7 +49,7 @@ glm::vec3 clip_position(int x, int y, float z) {
 struct Case {
   int samples;
   bool depth, blend;
-  int half;  ///< of a point, 1/256 px
+  int half;  ///< half the size of a point, 1/256 px
 };
 
 Emulation run(const Case& c, bool points) {

@@ -149,7 +149,8 @@ TEST(SceneCounts, FurBall) {
   EXPECT_LE(most, 32);
 }
 
-// SBAA, Fig. 2 and Table 3 (techniques 11): 6 primitives a covered pixel, about 12 % of the screen covered.
+// SBAA, Fig. 2 and Table 3 (docs/counts.md#primitives-and-triangles): 6 primitives a covered pixel, about 12
+// % of the screen covered.
 TEST(SceneCounts, Dragon) {
   const TemporaryFolder folder("dragon");
   const Scene scene = open_scene("dragon", folder.path());
