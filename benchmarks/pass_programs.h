@@ -1,4 +1,5 @@
 #pragma once
+// The programs of passes that benchmarks run.
 #include "pipeline/batch/program.h"
 
 namespace hwsim::benchmarks {

@@ -11,7 +11,7 @@ namespace hwsim::pipeline {
 ReuseProfile make_reuse_profile(std::vector<std::vector<BlockAccess>> by_worker, const BlockKinds& kinds,
                                 const std::array<std::uint64_t, kCacheSizes + 1>& l1_missing, bool exact,
                                 int jobs) {
-  constexpr std::size_t kAccessesMax = 32768;  // of a stream; bounds the time that a pass takes to analyze
+  constexpr std::size_t kAccessesMax = 32768;  // a stream; bounds the time that a pass takes to analyze
   std::vector<BlockAccess> all = std::move(by_worker.front());
   for (std::size_t i = 1; i < by_worker.size(); ++i)
     all.insert(all.end(), by_worker[i].begin(), by_worker[i].end());

@@ -14,7 +14,7 @@ inline constexpr std::uint32_t kLineBytes = 64;
 
 struct AccessTracker {
   static constexpr std::size_t kAtomicSlots = 16384;
-  static constexpr std::size_t kQuads = 16;  ///< of a batch of 64 lanes
+  static constexpr std::size_t kQuads = 16;  ///< a batch of 64 lanes has as many
 
   BlockKinds kinds;
   std::vector<BlockAccess> accesses;

@@ -1,4 +1,5 @@
 #pragma once
+// Reads and writes whole files.
 #include <cstddef>
 #include <cstdint>
 #include <span>

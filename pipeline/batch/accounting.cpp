@@ -21,8 +21,8 @@ class TripSum {
   const BlockLanes& sum() const { return sum_; }
 
  private:
-  /// Of the subgroup from lane `first` on; returns the most trips of one lane. A subgroup that the batch does
-  /// not fill is charged for its share: the hardware fills it with other quads.
+  /// Adds the subgroup from lane `first` on; returns the most trips of one lane. A subgroup that the batch
+  /// does not fill is charged for its share: the hardware fills it with other quads.
   template <std::size_t kWidth>
   std::uint64_t add(std::size_t first) {
     constexpr auto kLanes = static_cast<std::size_t>(kSubgroupWidths[kWidth]);
@@ -112,7 +112,7 @@ void account_shading(const FragmentBatch& batch, const FragmentProgram& program,
   c.tex.bilinear_probes += batch.tex_bilinear_probes;
   const std::uint64_t probes = c.tex.bilinear_probes - probes_before;
   c.tex.texels += 4 * probes;
-  c.mem.texture_read_bytes += 16 * (probes - batch.image_probes);  // of textures: 32 bits a texel
+  c.mem.texture_read_bytes += 16 * (probes - batch.image_probes);  // textures have 32 bits a texel
   charge_texels(batch.image_texels, c);
   c.mem.texture_read_bytes += batch.image_read_bytes;
   c.mem.storage_read_bytes += batch.storage_read_bytes;

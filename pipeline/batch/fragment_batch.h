@@ -40,7 +40,7 @@ struct MaterialView {
 /// A depth image's tiles as planes, where they are held so. Reading texels leaves the planes in place.
 struct DepthPlaneView {
   const GpuImage* image = nullptr;        ///< null: the pass reads none
-  std::vector<std::uint8_t> plane_count;  ///< of each tile; 0: not held as planes
+  std::vector<std::uint8_t> plane_count;  ///< one number a tile; 0: not held as planes
 };
 
 /// Image and buffer slots of a pass.
@@ -51,10 +51,10 @@ struct ResourceView {
   std::array<Format, kMaxColorTargets> target_formats{};  ///< as they store to them
   std::array<std::uint32_t*, kMaxBufferSlots> buffers{};
   std::array<std::uint64_t, kMaxBufferSlots> buffer_words{};
-  const MaterialView* materials = nullptr;  ///< of the scene, in its order
+  const MaterialView* materials = nullptr;  ///< the scene's, in its order
   const DepthPlaneView* depth_planes = nullptr;
   std::array<std::uint32_t, kMaxImageSlots> image_first_line{};  ///< after the lines of the textures
-  AccessTracker* tracker = nullptr;                              ///< of the worker
+  AccessTracker* tracker = nullptr;                              ///< the worker's own
 };
 
 /// How often each lane went through each block of a shader (a loop's body: once for each iteration).
@@ -83,18 +83,19 @@ struct ImageStore {
 struct FragmentBatch {
   int quad_count = 0;              ///< quads whose fields below are set
   std::uint64_t valid_lanes = 0;   ///< lanes of quads that run, helpers included
-  std::uint64_t active_lanes = 0;  ///< of these, fragments
+  std::uint64_t active_lanes = 0;  ///< valid lanes that are fragments
   int sample_index = -1;           ///< sample-rate shading: the sample; -1 at pixel rate
-  int layer = 0;                   ///< of the attachments
+  int layer = 0;                   ///< the layer of the attachments that is drawn to
 
-  // Of each quad
+  // One value a quad
   std::array<std::int32_t, kBatchQuads> quad_x, quad_y;  ///< top left pixel
-  std::array<const float*, kBatchQuads> varyings[3];  ///< of the three vertices; null in full-screen passes
+  std::array<const float*, kBatchQuads>
+      varyings[3];  ///< the three vertices' values; null in full-screen passes
   std::array<std::uint32_t, kBatchQuads> primitive;
   std::array<bool, kBatchQuads> front_facing;
   std::array<const RasterTriangle*, kBatchQuads> triangle;
 
-  // Of each lane
+  // One value a lane
   alignas(64) std::array<float, kBatchLanes> b1,
       b2;  ///< perspective-correct barycentrics at the shading point
   alignas(64) std::array<float, kBatchLanes> b1_center, b2_center;  ///< at the pixel center, for derivatives
@@ -104,22 +105,22 @@ struct FragmentBatch {
 
   const MaterialView* material = nullptr;
   const ResourceView* resources = nullptr;
-  PassCounters* counters = nullptr;  ///< of the current chunk
+  PassCounters* counters = nullptr;  ///< the current chunk's
 
-  std::vector<ImageStore>* stores = nullptr;  ///< of the worker
-  std::uint64_t store_order = 0;              ///< of the batch, with room for the lane
+  std::vector<ImageStore>* stores = nullptr;  ///< the worker's own
+  std::uint64_t store_order = 0;              ///< the batch's place, with room for the lane
 
   // Results
-  alignas(64) float depth[kBatchLanes];  ///< of programs that write it
+  alignas(64) float depth[kBatchLanes];  ///< set by programs that write it
   alignas(64) float color[kMaxColorTargets][4][kBatchLanes];
-  alignas(64) std::array<std::uint32_t, kBatchLanes> output_mask;  ///< of programs that write one
+  alignas(64) std::array<std::uint32_t, kBatchLanes> output_mask;  ///< set by programs that write one
   std::uint64_t discarded_lanes = 0;
   BlockTrips blocks;
   std::uint64_t tex_bilinear_probes = 0;  ///< beyond the first of each request
   std::uint64_t image_probes = 0;         ///< filtered requests to the pass's images
   TexelCounts image_texels;               ///< unfiltered texels loaded from the pass's images
-  std::uint64_t image_read_bytes = 0;     ///< of both
-  std::uint64_t storage_read_bytes = 0, storage_write_bytes = 0;  ///< of the pass's buffers
+  std::uint64_t image_read_bytes = 0;     ///< read by probes and texels
+  std::uint64_t storage_read_bytes = 0, storage_write_bytes = 0;  ///< the pass's buffers
 };
 
 /// Up to 64 vertices in a vertex shader.
@@ -153,14 +154,14 @@ struct FloatAdd {
 struct GroupBatch {
   int group_x = 0, group_y = 0;
   int width = 0, height = 0;              ///< invocations of the group
-  int image_width = 0, image_height = 0;  ///< of the pass
+  int image_width = 0, image_height = 0;  ///< the pass's
   const ResourceView* resources = nullptr;
   std::uint32_t* group_memory = nullptr;   ///< zeroed before the group starts
   const MaterialView* material = nullptr;  ///< the program chooses one of the resources'
   const ComputeProgram* program = nullptr;
   PassCounters* counters = nullptr;
-  BlockTrips blocks;                 ///< of the 64 invocations of the current wave
-  std::vector<FloatAdd> float_adds;  ///< of the current wave; they take effect when it ends, lane by lane
+  BlockTrips blocks;                 ///< the current wave's 64 invocations
+  std::vector<FloatAdd> float_adds;  ///< the current wave's; they take effect when it ends, lane by lane
 };
 
 }  // namespace hwsim::pipeline

@@ -16,15 +16,15 @@ struct GeometryBatch {
   const GeometryProgram* program = nullptr;
   PassCounters* counters = nullptr;
 
-  // Of each lane
+  // One value a lane
   alignas(64) float clip_position[3][4][kBatchLanes];
   std::array<const float*, kBatchLanes>
-      varyings[3];  ///< of the three vertices, as the vertex program wrote them
+      varyings[3];  ///< the three vertices' values, as the vertex program wrote them
   alignas(64) std::array<std::int32_t, kBatchLanes> primitive;  ///< number in the draw
 
   // Results. A lane's vertices follow each other: clip position, then varyings.
-  std::vector<float> vertices;             ///< of lane l from l * max_vertices * scalars_per_vertex() on
-  std::vector<std::uint8_t> starts_strip;  ///< of each vertex, likewise
+  std::vector<float> vertices;             ///< lane l's begin at l * max_vertices * scalars_per_vertex()
+  std::vector<std::uint8_t> starts_strip;  ///< one flag a vertex, in the same order
   alignas(64) std::array<std::int32_t, kBatchLanes> vertex_count{};
   std::array<bool, kBatchLanes> strip_ended{};
   BlockTrips blocks;

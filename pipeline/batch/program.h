@@ -23,7 +23,7 @@ struct ShaderOps {
   std::uint32_t group_memory = 0;
 
   std::uint32_t alu_chain = 0;     ///< longest chain of operations that wait for each other
-  std::uint32_t memory_chain = 0;  ///< of texture requests, loads and atomics that do
+  std::uint32_t memory_chain = 0;  ///< longest chain of texture requests, loads and atomics
   std::uint32_t vliw5_words = 0;   ///< five-slot words at best: slots, t slots and the chain bound them
   std::uint32_t registers = 0;     ///< values alive at once, in block 0 for the whole shader
 };

@@ -329,7 +329,7 @@ class BinDepth {
   const PassContext& c_;
   BinWorker& w_;
   const int samples_;
-  const int layer_;  ///< of the attachments
+  const int layer_;  ///< the layer of the attachments
 };
 
 }  // namespace hwsim::pipeline::HWY_NAMESPACE

@@ -386,7 +386,7 @@ class BinShading : protected BinColor {
       alpha_ = AlphaCoverage(samples_, layer_, static_cast<int>(c_.viewports.size()), state.alpha_dither);
   }
 
-  SampleMasks primitive_masks_;  ///< of the tile at hand, before depth and stencil
+  SampleMasks primitive_masks_;  ///< the tile at hand, before depth and stencil
   bool keeps_primitive_masks_ = false;
   bool masks_output_ = false;  ///< a mask or alpha changes the coverage after the shader
   AlphaCoverage alpha_;

@@ -132,7 +132,7 @@ inline void store_tile(GpuImage& image, int block, int sample, std::uint64_t mas
 /// A write to a tile of a multisampled image, lane by lane.
 struct TileWrite {
   std::uint64_t any = 0;    ///< lanes written at some sample
-  std::uint64_t whole = 0;  ///< of these, at all samples
+  std::uint64_t whole = 0;  ///< lanes written at all samples
   std::uint64_t count = 0;  ///< samples
   bool blends = false;      ///< the result depends on what the target holds
 };

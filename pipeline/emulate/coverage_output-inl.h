@@ -42,7 +42,7 @@ class AlphaCoverage {
  private:
   int total_ = 1;
   bool dither_ = true;
-  std::array<std::uint32_t, 2 * kMaxSamples + 1> masks_{};  ///< of each k
+  std::array<std::uint32_t, 2 * kMaxSamples + 1> masks_{};  ///< the mask for k samples, by k
 };
 
 /// The masks of a batch's fragments from color 0's alpha.

@@ -388,7 +388,7 @@ class FrameRunner {
   TextureStore textures_;
   MaterialViews materials_;
   FrameMemory memory_;
-  DepthPlaneView planes_;                           ///< of the pass at hand
+  DepthPlaneView planes_;                           ///< what the pass at hand reads
   std::vector<SamplePosition> coverage_positions_;  ///< likewise
   std::vector<BinWorker> workers_;
   int heat_blocks_x_;

@@ -23,7 +23,7 @@ class FrameMemory {
   std::vector<const GpuImage*> images() const;
 
   void note_writes(const Pass& pass);
-  /// Of each image: whether nothing was drawn into it since its clear.
+  /// One flag an image: whether nothing was drawn into it since its clear.
   const std::vector<char>& cleared() const { return cleared_; }
   /// Adds the image's tiles that nothing has used since their clear to `untouched_tiles`.
   void count_untouched(const GpuImage& image);

@@ -28,7 +28,7 @@ class MaterialViews {
   struct VertexRange {
     std::uint32_t first = 0, count = 0;
   };
-  std::vector<std::vector<VertexRange>> ranges_;  ///< of each mesh and part
+  std::vector<std::vector<VertexRange>> ranges_;  ///< by mesh and part
 };
 
 }  // namespace hwsim::pipeline

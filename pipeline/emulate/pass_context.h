@@ -15,7 +15,7 @@ struct PassContext {
   const Pass* pass = nullptr;
   GpuImage* depth = nullptr;
   float depth_scale = 0.0f;  ///< see memory/depth_format.h
-  int depth_bytes = 0;       ///< of a sample, for byte counts
+  int depth_bytes = 0;       ///< a sample's size, for byte counts
   std::vector<GpuImage*> color;
   int width = 0, height = 0, samples = 1;
   int bins_x = 0, bins_y = 0;
@@ -52,12 +52,12 @@ struct BinWorker {
   std::array<QuadSamples, kBatchQuads>
       primitive_samples;                              ///< before depth and stencil, where they are asked for
   FragmentBatch sample_batch;                         ///< sample-rate shading: the quads that have the sample
-  std::array<std::int32_t, kBatchQuads> sample_quad;  ///< of each quad of sample_batch: its number in `batch`
+  std::array<std::int32_t, kBatchQuads> sample_quad;  ///< by quad of sample_batch: its number in `batch`
   /// Halves of points, for the quads of `batch`, and one more that is set up.
   std::array<RasterTriangle, kBatchQuads + 1> point_halves;
   std::size_t next_half = 0;
 
-  ResourceView resources;  ///< of the pass, with the trackers of this worker
+  ResourceView resources;  ///< the pass's, with the trackers of this worker
   AccessTracker tracker;
   std::unique_ptr<GeometryBatch> geometry_batch;  ///< made where a geometry shader runs
   std::vector<ImageStore> stores;
@@ -67,7 +67,7 @@ struct BinWorker {
   std::uint64_t hidden_samples_passed = 0;  ///< 0, or the coarse test is wrong; known with its skip off
   std::uint64_t accepted_tiles_skipped = 0;
   std::uint64_t plane_tiles_skipped = 0;
-  const DrawInfo* draw = nullptr;  ///< of the quads in `batch`
+  const DrawInfo* draw = nullptr;  ///< the draw whose quads are in `batch`
   const PipelineState* state = nullptr;
   const FragmentProgram* program = nullptr;
   const void* uniforms = nullptr;
@@ -86,7 +86,7 @@ void run_full_screen_bin(const PassContext& context, int bin, BinWorker& worker)
 
 /// Whether depth and stencil are tested after the shader (docs/hardware_sources.md#early-depth).
 bool tests_late(const PipelineState& state, const FragmentProgram* program);
-/// Of those that are: whether a first test, without writes, comes before the shader.
+/// Whether a late test has a first one, without writes, before the shader.
 bool rejects_early(const PipelineState& state, const FragmentProgram* program);
 
 /// Counts the use of a tile: once a chunk, and once a pass.

@@ -15,7 +15,7 @@ ShadedVertex place_vertex(const float (&clip)[4], const GuardBand& band, int wid
 /// Where a primitive's vertices and varyings lie.
 struct VertexSource {
   const ShadedVertex* vertices = nullptr;
-  const float* varyings = nullptr;  ///< of vertex v: varyings + v * stride
+  const float* varyings = nullptr;  ///< vertex v's begin at varyings + v * stride
   std::size_t stride = 0, scalars = 0;
   bool temporary = false;  ///< varyings are copied to the item, where shading finds them later
 };

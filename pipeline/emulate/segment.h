@@ -23,7 +23,7 @@ struct DrawInfo {
   const MaterialView* material = nullptr;
   float world_from_local[16] = {};
   float normal_from_local[9] = {};
-  const std::uint32_t* indices = nullptr;  ///< of the part, or of the call's list
+  const std::uint32_t* indices = nullptr;  ///< the part's, or the call's own list
   std::uint32_t index_count = 0;
   std::uint32_t first_index = 0;  ///< place among the mesh's indices; a list's own place behind them
   int index_bytes = 4;            ///< as fetched
@@ -59,7 +59,7 @@ struct GeometryItem {
   bool outside = false;                                    ///< no part of it is in the view volume
 
   std::vector<RasterTriangle> triangles;
-  std::vector<RasterPoint> points;  ///< of a draw of points, in place of triangles
+  std::vector<RasterPoint> points;  ///< what a draw of points has in place of triangles
   std::vector<float> clipped_varyings;
   std::vector<std::uint32_t>
       binned;  ///< triangle or point numbers, sorted by bin, in submission order within a bin
@@ -78,9 +78,9 @@ struct Segment {
   std::vector<GeometryItem> items;
   std::size_t first_item = 0, last_item = 0;  ///< those that are built now
   std::vector<ShadedVertex> vertices;
-  std::vector<float> varyings;  ///< of all draws; stride: varying_scalars of the draw's vertex program
+  std::vector<float> varyings;  ///< all draws'; stride: varying_scalars of the draw's vertex program
   std::uint32_t first_draw = 0;
-  std::vector<std::uint32_t> vertex_base;  ///< of each draw of the segment: its first element of `vertices`
+  std::vector<std::uint32_t> vertex_base;  ///< by draw of the segment: its first element of `vertices`
   std::vector<std::size_t> varying_base;   ///< likewise of `varyings`
 };
 

@@ -220,7 +220,7 @@ std::vector<PassCounters> count_transfer(const Pass& pass, const GpuImage* sourc
   if (source != nullptr && source->tracks_colors())
     for (int block = 0; block < source->blocks_x * source->blocks_y * source->layers; ++block)
       count_pixel_colors(kReadPixels, *source, block, read);
-  const std::uint64_t map_bytes =  // of pixels that hold one color nothing more is read
+  const std::uint64_t map_bytes =  // pixels that hold one color need nothing more
       source == nullptr ? 0
                         : coverage_map_bytes(source->samples, source->coverage_samples) *
                               (read.read_double_pixels + read.read_mixed_pixels);

@@ -175,7 +175,7 @@ struct LineRead {
 };
 
 struct PartFetch {
-  std::vector<std::uint32_t> misses;  ///< of each run of kItemPrimitives primitives
+  std::vector<std::uint32_t> misses;  ///< one number a run of kItemPrimitives primitives
   std::vector<LineRead> reads;        ///< by primitive
 };
 

@@ -15,7 +15,7 @@ struct Look {
   double metallic = 0.0;
   double roughness = 0.8;
   bool double_sided = false;
-  int texture = -1;  ///< of Blueprint::textures, over the color
+  int texture = -1;  ///< index into Blueprint::textures, laid over the color
   bool unlit = false;
   bool alpha_test = false;  ///< the texture's alpha cuts holes
 };

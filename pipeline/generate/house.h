@@ -1,4 +1,5 @@
 #pragma once
+// A house front with bays, shutters and balconies, for generated cities.
 #include "pipeline/generate/blueprint.h"
 #include "pipeline/generate/exact_math.h"
 
@@ -12,9 +13,9 @@ struct HouseLooks {
 struct HouseShape {
   int bays = 3, floors = 3;
   double bay_m = 2.4, floor_m = 3.2, depth_m = 8.0;
-  int shutter_slats = 12;  ///< of one leaf
+  int shutter_slats = 12;  ///< slats that one leaf has
   double bars_per_m = 9.0;
-  int sides = 6;  ///< of iron bars
+  int sides = 6;  ///< sides that an iron bar has
   HouseLooks looks;
 };
 

@@ -1,4 +1,5 @@
 #pragma once
+// Trees, bushes and tufts of leaf cards, for generated scenes.
 #include "pipeline/generate/exact_math.h"
 #include "pipeline/generate/surface.h"
 
@@ -12,7 +13,7 @@ void add_card(Surface& s, const glm::dvec3& foot, const glm::dvec3& up, const gl
 struct TreeShape {
   double height_m = 6.0;
   double trunk_radius_m = 0.14;
-  int branch_levels = 2;  ///< of branches on branches; the trunk is not one
+  int branch_levels = 2;  ///< generations of branches on branches; the trunk is not one
   int cards = 600;        ///< with leaves, two triangles each
   double card_m = 0.35;   ///< length of a card
 };

@@ -1,4 +1,5 @@
 #pragma once
+// Writes the PNG files of generated textures.
 #include <cstdint>
 #include <vector>
 

@@ -1,4 +1,5 @@
 #pragma once
+// All generators of scenes, and what each is given.
 #include <map>
 #include <span>
 #include <string>

@@ -1,4 +1,5 @@
 #pragma once
+// Values of an accessor as plain arrays.
 #include <cstdint>
 #include <vector>
 

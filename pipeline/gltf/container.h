@@ -13,7 +13,7 @@ struct Container {
   std::vector<std::uint8_t> bytes;
   bool binary = false;
   std::size_t json_begin = 0, json_bytes = 0;
-  std::size_t bin_bytes = 0;  ///< of the BIN chunk, 0: none
+  std::size_t bin_bytes = 0;  ///< size of the BIN chunk, 0: none
 
   std::string_view json() const {
     return {reinterpret_cast<const char*>(bytes.data()) + json_begin, json_bytes};

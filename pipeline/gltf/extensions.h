@@ -1,4 +1,5 @@
 #pragma once
+// Extensions of glTF that are ignored, and what that changes.
 #include <string>
 
 #include "pipeline/gltf/source.h"

@@ -1,4 +1,5 @@
 #pragma once
+// Meshes of a glTF file as triangles.
 #include <vector>
 
 #include "pipeline/gltf/source.h"

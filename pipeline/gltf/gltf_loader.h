@@ -1,4 +1,5 @@
 #pragma once
+// Loads a glTF file as a scene.
 #include <string>
 
 #include "pipeline/scene/scene.h"

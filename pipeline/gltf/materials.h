@@ -1,4 +1,5 @@
 #pragma once
+// Materials, samplers and textures of a glTF file.
 #include <utility>
 #include <vector>
 

@@ -1,4 +1,5 @@
 #pragma once
+// Nodes of a glTF file, and the lights and cameras that they place.
 #include <glm/glm.hpp>
 #include <vector>
 

@@ -1,4 +1,5 @@
 #pragma once
+// Checks that buffer views, accessors and images lie inside of what holds them.
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string_view>

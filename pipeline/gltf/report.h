@@ -1,4 +1,5 @@
 #pragma once
+// Errors, warnings and notes about one glTF file.
 #include <map>
 #include <string>
 #include <utility>

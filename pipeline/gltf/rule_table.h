@@ -1,4 +1,5 @@
 #pragma once
+// The types and references that glTF 2.0 asks of each key, as a table.
 #include <cstddef>
 #include <span>
 

@@ -1,4 +1,5 @@
 #pragma once
+// Checks of a glTF file before the parser reads it.
 #include <nlohmann/json_fwd.hpp>
 #include <string_view>
 

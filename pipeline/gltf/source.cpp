@@ -20,7 +20,7 @@ using nlohmann::json;
 struct Callbacks {
   std::string folder;
   std::size_t max_file_bytes = 0;
-  std::map<std::string, std::size_t> declared_bytes;  ///< of external buffers, by decoded URI
+  std::map<std::string, std::size_t> declared_bytes;  ///< external buffers' sizes, by decoded URI
   ContentHash hash;
   std::set<std::string> files;
   std::vector<std::vector<std::uint8_t>> images;

@@ -16,7 +16,8 @@ std::uint64_t allocated_bytes(const ImageDesc& image) {
 
 std::uint64_t coverage_map_bytes(int samples, int coverage_samples) {
   if (coverage_samples == 0) return 0;
-  const int bits = static_cast<int>(std::bit_width(static_cast<unsigned>(samples)));  // of 0..samples
+  const int bits =
+      static_cast<int>(std::bit_width(static_cast<unsigned>(samples)));  // that number 0..samples
   return static_cast<std::uint64_t>(coverage_samples * bits + 7) / 8;
 }
 

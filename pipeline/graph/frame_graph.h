@@ -36,7 +36,8 @@ struct ImageDesc {
   int width = 0;
   int height = 0;
   int samples = 1;
-  int layers = 1;  ///< of an array image; shaders read sample s of layer l as sample l * samples + s
+  int layers =
+      1;  ///< more than 1: an array image; shaders read sample s of layer l as sample l * samples + s
   /// Color: positions of a pixel that name one of its samples as theirs, in a map beside the texels (CSAA,
   /// EQAA; docs/techniques/forward.md#coverage-sampling). More than `samples`; 0: no map.
   int coverage_samples = 0;
@@ -55,7 +56,7 @@ bool same_bits(Format a, Format b);
 /// Bytes as allocated: width * height * samples * layers * bytes per element. No padding: the papers' figures
 /// have none.
 std::uint64_t allocated_bytes(const ImageDesc& image);
-/// Of a pixel's coverage map: for each position the number of a sample, or none. 0 without one.
+/// Size of a pixel's coverage map: for each position the number of a sample, or none. 0 without a map.
 std::uint64_t coverage_map_bytes(int samples, int coverage_samples);
 std::uint64_t allocated_bytes(const BufferDesc& buffer);
 
@@ -137,7 +138,7 @@ struct Pass {
   std::uint8_t clear_stencil = 0;
   std::vector<Format>
       target_views;  ///< as which shaders store to `targets`; missing or none: the image's format
-  float full_screen_depth = 0.0f;  ///< of the triangle that covers the screen
+  float full_screen_depth = 0.0f;  ///< where the triangle lies that covers the screen
   bool keep = false;               ///< never culled: a simulated workload without output
 
   Format view_of(const FrameGraph& graph, std::size_t slot) const;
@@ -185,7 +186,7 @@ class FrameGraph {
   ImageId output_;
   Format output_view_ = Format::none;
   std::vector<ImageDesc> images_;
-  std::vector<std::shared_ptr<const RawImage>> contents_;  ///< of each image
+  std::vector<std::shared_ptr<const RawImage>> contents_;  ///< by image
   std::vector<BufferDesc> buffers_;
   std::vector<Pass> passes_;
 };

@@ -362,7 +362,7 @@ class Validator {
 
   void check_compute(const Pass& pass) {
     if (pass.compute == nullptr) fail("G007", "compute pass `" + pass.name + "` has no program");
-    // Of what a program can store, only sums of floats depend on the order of groups.
+    // Only sums of floats depend on the order of groups, nothing else that a program can store.
     if (pass.compute != nullptr && pass.compute->ordered_storage && !features_.float_atomics)
       fail("G006", "compute pass `" + pass.name + "` adds floats by atomics, which this GPU cannot",
            "gpu.features.float_atomics = true");

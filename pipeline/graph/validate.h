@@ -1,4 +1,5 @@
 #pragma once
+// The rules that a frame graph must obey on a GPU.
 #include "pipeline/graph/frame_graph.h"
 
 namespace hwsim::pipeline {

@@ -147,7 +147,7 @@ Features features(const Plane& luma) {
   return found;
 }
 
-// Of Y in [0,1] instead of [-16,100]: the filters have no response to the shift, only to the scale.
+// Y lies in [0,1] instead of [-16,100]: the filters have no response to the shift, only to the scale.
 Plane feature_error(const Plane& test, const Plane& reference) {
   const Features t = features(test), r = features(reference);
   Plane error(test.width, test.height);

@@ -1,4 +1,5 @@
 #pragma once
+// FLIP: the difference that a viewer sees when two pictures are flipped.
 #include "pipeline/image/image.h"
 #include "pipeline/image/plane.h"
 

@@ -1,4 +1,5 @@
 #pragma once
+// What an image file is, and whether all of it is there, before a library reads it.
 #include <cstdint>
 #include <span>
 

@@ -6,9 +6,9 @@
 namespace hwsim::pipeline {
 
 struct ImageError {
-  double psnr_db = 0.0;  ///< of sRGB-encoded values in [0,1]; +infinity is reported as 999
+  double psnr_db = 0.0;  ///< from sRGB-encoded values in [0,1]; +infinity is reported as 999
   double rmse = 0.0;     ///< likewise
-  double ssim = 0.0;     ///< of luma, 11x11 Gaussian window, sigma 1.5 (Wang et al. 2004)
+  double ssim = 0.0;     ///< from luma, 11x11 Gaussian window, sigma 1.5 (Wang et al. 2004)
   double flip_mean = 0.0, flip_median = 0.0, flip_p99 = 0.0;  ///< LDR FLIP (Andersson et al. 2020), 0..1
 };
 

@@ -1,4 +1,5 @@
 #pragma once
+// Finds and opens the image module when the first file is read or written.
 #include <string>
 #include <vector>
 

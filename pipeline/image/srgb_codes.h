@@ -1,4 +1,5 @@
 #pragma once
+// Pictures as 8-bit sRGB codes, and back.
 #include "pipeline/image/image.h"
 #include "pipeline/image/image_io.h"
 

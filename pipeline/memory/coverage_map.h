@@ -22,7 +22,7 @@
 
 namespace hwsim::pipeline {
 
-inline constexpr int kMaxCoveragePositions = 16;  ///< of four bits each in a map's word
+inline constexpr int kMaxCoveragePositions = 16;  ///< each has four bits in a map's word
 inline constexpr std::uint32_t kNoSample = 15;
 
 /// The entries of a pixel. Those of samples name the lowest sample of the same fragment. All zero: one
@@ -52,7 +52,7 @@ struct CoverageLayout {
     return named == kNoSample ? nearest_sample[static_cast<std::size_t>(position)] : named;
   }
 };
-/// Of the patterns that coverage_positions() knows. Throws as that does.
+/// The layout for a pattern that coverage_positions() knows. Throws as that does.
 const CoverageLayout& coverage_layout(int samples, int positions);
 
 /// Another sample of the fragment of `sample` among those of `left`, or none.

@@ -1,4 +1,5 @@
 #pragma once
+// Depth of a tile from its planes, one sample at a time.
 #include "pipeline/memory/depth_format.h"
 #include "pipeline/memory/gpu_image.h"
 

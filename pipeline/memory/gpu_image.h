@@ -30,32 +30,31 @@ struct GpuImage {
   std::vector<std::uint32_t> texels;
   std::vector<std::uint8_t> stencil;  ///< as texels with one word, only for stencil formats
   std::vector<std::uint32_t> depth_min,
-      depth_max;  ///< of each tile, depth formats only: bounds, exact after each draw
-  std::vector<std::uint32_t>
-      touched_chunk;  ///< of each tile: 1 + the last chunk of the current pass that used it
+      depth_max;                             ///< by tile, depth formats only: bounds, exact after each draw
+  std::vector<std::uint32_t> touched_chunk;  ///< by tile: 1 + the last chunk of the current pass that used it
 
   // Multisampled color: what compression would see, and what the emulator need not store
   // (docs/compression.md#color).
-  std::vector<std::uint64_t> single_lanes;  ///< of each tile: pixels with one color at all samples
+  std::vector<std::uint64_t> single_lanes;  ///< by tile: pixels with one color at all samples
   std::vector<std::uint64_t> double_lanes;  ///< pixels with two colors
-  std::vector<std::uint64_t> second_color;  ///< of each sample: pixels of double_lanes that hold the second
+  std::vector<std::uint64_t> second_color;  ///< by sample: pixels of double_lanes that hold the second
   std::vector<std::uint64_t> stale_lanes;   ///< single pixels of which only sample 0 has been written
 
   int coverage_samples = 0;                   ///< positions of the coverage map (memory/coverage_map.h)
-  std::vector<std::uint64_t> coverage_map;    ///< of each pixel, tile by tile
-  std::vector<std::uint64_t> coverage_whole;  ///< of each tile: pixels that one fragment covers everywhere
+  std::vector<std::uint64_t> coverage_map;    ///< by pixel, tile by tile
+  std::vector<std::uint64_t> coverage_whole;  ///< by tile: pixels that one fragment covers everywhere
 
   // Depth formats: tiles held as planes; their texels are stale.
-  std::vector<std::uint8_t> plane_count;        ///< of each tile; 0: the texels hold the depth
+  std::vector<std::uint8_t> plane_count;        ///< by tile; 0: the texels hold the depth
   std::vector<DepthPlane> planes;               ///< kMaxDepthPlanes a tile
   std::vector<std::uint64_t> plane_lanes;       ///< lanes of each sample of each of these planes
   std::vector<SamplePosition> plane_positions;  ///< where samples lay when the planes were written
-  std::vector<DepthTileForm> stored_form;       ///< of each tile, as last given back to memory
+  std::vector<DepthTileForm> stored_form;       ///< by tile, as last given back to memory
 
-  std::vector<std::uint8_t> unsaved;  ///< of each tile: 1 when written since it was last given back to memory
+  std::vector<std::uint8_t> unsaved;  ///< by tile: 1 when written since it was last given back to memory
 
   /// A clear only marks its tiles, as hardware's fast clear does; a tile is filled when it is first used.
-  std::vector<std::uint8_t> cleared;  ///< of each tile: 1 while its texels are still to be filled
+  std::vector<std::uint8_t> cleared;  ///< by tile: 1 while its texels are still to be filled
   std::array<std::uint32_t, 4> clear_words{};
   float clear_depth = 1.0f;
   std::uint8_t clear_stencil = 0;

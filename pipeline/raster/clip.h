@@ -6,7 +6,7 @@ namespace hwsim::pipeline {
 
 struct ClipVertex {
   std::array<double, 4> position;   ///< x, y, z, w; inside: 0 <= z <= w, |x|, |y| within the band
-  std::array<double, 3> weights{};  ///< of the triangle's three vertices; sum 1
+  std::array<double, 3> weights{};  ///< shares of the triangle's three vertices; sum 1
 };
 
 /// Limits of x/w and y/w that keep screen coordinates inside the guard band; and those of the view, 1 unless

@@ -81,7 +81,7 @@ bool set_bounds(const PixelBounds& b, const SetupRules& rules, RasterTriangle& t
 
 struct Gradients {
   double x0, y0;                      // vertex 0 relative to the reference pixel, px
-  double l1_dx, l1_dy, l2_dx, l2_dy;  // of the barycentric coordinates, per px
+  double l1_dx, l1_dy, l2_dx, l2_dy;  // slopes of the barycentric coordinates, per px
 };
 
 PlaneEquation make_plane(const Gradients& g, double v0, double v1, double v2) {

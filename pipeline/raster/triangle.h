@@ -46,7 +46,7 @@ struct RasterTriangle {
   std::uint32_t draw;        ///< index into the pass's flat list of draws
   std::uint32_t chunk;       ///< index of the chunk of work
   std::uint32_t primitive;   ///< number of the triangle in the pass, in submission order
-  std::int32_t layer;        ///< of the attachments
+  std::int32_t layer;        ///< the layer of the attachments
   bool front_facing;
 };
 
@@ -67,8 +67,9 @@ enum class SetupResult { drawn, backface, zero_area, sample_miss };
 
 struct SetupRules {
   bool cull_back = false, cull_front = false;
-  int width_px = 0, height_px = 0;                                             ///< viewport
-  int sample_min_x = 0, sample_min_y = 0, sample_max_x = 0, sample_max_y = 0;  ///< of the pattern, 1/16 px
+  int width_px = 0, height_px = 0;  ///< viewport
+  int sample_min_x = 0, sample_min_y = 0, sample_max_x = 0,
+      sample_max_y = 0;  ///< bounds of the pattern, 1/16 px
   bool conservative = false;
 };
 
@@ -110,8 +111,8 @@ struct PointPixel {
                y < rules.height_px;
   }
 
-  /// Of the tile, by the coarse raster: by the half that has the sample, and by the other one unless the
-  /// diagonal cuts it off in the tile's corner.
+  /// How often the coarse raster visits the tile: for the half that has the sample, and for the other one
+  /// unless the diagonal cuts it off in the tile's corner.
   std::uint64_t visits() const {
     return upper ? ((x & 7) == 0 && (y & 7) == 7 ? 1 : 2) : ((x & 7) == 7 && (y & 7) == 0 ? 1 : 2);
   }

@@ -1,4 +1,5 @@
 #pragma once
+// A camera's rays through points of the image.
 #include "pipeline/scene/scene.h"
 
 namespace hwsim::pipeline {

@@ -1,4 +1,5 @@
 #pragma once
+// A surface at a point of a triangle: attributes and their derivatives.
 #include <array>
 
 #include "pipeline/reference/reference_scene.h"

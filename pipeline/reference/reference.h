@@ -22,7 +22,7 @@ struct ReferenceOptions {
   /// A sample brighter than this is clamped before samples are averaged; 1 is what a multisampled 8-bit
   /// target does.
   float largest_sample_value = std::numeric_limits<float>::infinity();
-  float footprint_scale = 1.0f;  ///< of the derivatives for texture filtering; 1: a pixel
+  float footprint_scale = 1.0f;  ///< factor on the derivatives for texture filtering; 1: a pixel
   /// The share of rows done, (0,1], from one thread at a time. An exception thrown here ends the rendering.
   std::function<void(double share)> progress{};
 };

@@ -21,8 +21,8 @@ struct GroundTruthOptions {
   /// Positions from the pixel's center, in pixels, x right, y down, the same in every pixel. Not empty:
   /// `samples` is ignored.
   std::vector<glm::vec2> offsets_px{};
-  /// Of a pixel, for texture filtering. 0: 1 / sqrt(samples), so that the samples' footprints together fill
-  /// the pixel.
+  /// Footprint for texture filtering, as a part of a pixel. 0: 1 / sqrt(samples), so that the samples'
+  /// footprints together fill the pixel.
   float footprint_scale = 0.0f;
   int jobs = 1;
   bool shadows = true;  ///< rays to the shadow-casting directional light; no other light casts any

@@ -1,4 +1,5 @@
 #pragma once
+// A camera and a light for scenes whose file has none.
 #include "pipeline/scene/scene.h"
 
 namespace hwsim::pipeline {

@@ -1,4 +1,5 @@
 #pragma once
+// The smaller levels of a texture.
 #include <cstdint>
 #include <vector>
 

@@ -93,7 +93,8 @@ struct Mesh {
     std::uint32_t first_index = 0;
     std::uint32_t index_count = 0;  ///< a multiple of 3
     int material = 0;
-    std::vector<TriangleCluster> clusters = {};  ///< of each kClusterTriangles triangles; empty: not known
+    std::vector<TriangleCluster> clusters =
+        {};  ///< one for each kClusterTriangles triangles; empty: not known
   };
   std::vector<Part> parts;
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};

@@ -100,7 +100,7 @@ class FragmentLanes : public LaneFlow {
   I pixel_x() const { return load(batch_.pixel_x.data() + first_); }
   I pixel_y() const { return load(batch_.pixel_y.data() + first_); }
   int sample_index() const { return batch_.sample_index; }
-  int layer() const { return batch_.layer; }  ///< of a multicast pass
+  int layer() const { return batch_.layer; }  ///< the layer that a multicast pass draws
   I coverage() const { return load(reinterpret_cast<const std::int32_t*>(batch_.coverage.data()) + first_); }
   int first_lane() const { return first_; }
   FragmentBatch& batch() { return batch_; }

@@ -87,7 +87,7 @@ class LaneFlow {
   BlockTrips& blocks_;
   int first_;
   M valid_;
-  M live_;  ///< of the valid ones, those in the current branch
+  M live_;  ///< valid lanes in the current branch
 };
 
 }  // namespace hwsim::pipeline::HWY_NAMESPACE

@@ -18,7 +18,7 @@ struct SurfaceVaryings {
   static constexpr int kNormalOnly = 3, kNormalUv = 5, kBasic = 8, kFull = 18;
 };
 
-/// Of mesh_geometry_program: passes that need the primitive's plane and perhaps its alpha.
+/// What mesh_geometry_program writes, for passes that need the primitive's plane and perhaps its alpha.
 struct GeometryVaryings {
   static constexpr int kPosition = 0;  ///< 3, world space
   static constexpr int kUv0 = 3;       ///< 2, the base color texture's

@@ -43,7 +43,7 @@ class OpRecorder {
   /// costs what it does at one, the dearest, not their sum.
   Site open(int block);
   void close(const Site& outer);
-  /// Of the block that is being recorded, for what has no operands: branches and loop counters.
+  /// Costs of the block that is being recorded, for what has no operands: branches and loop counters.
   ShaderOps& ops() { return blocks_[static_cast<std::size_t>(block_)]; }
   int block_count() const { return block_count_; }
 

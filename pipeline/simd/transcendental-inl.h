@@ -1,6 +1,6 @@
-// exp2 and log2 from exact operations (add, multiply, floor, shifts), so that every vector width and the
-// scalar type give the same bits. The library's functions differ between targets. Per-target include guard,
-// see simd/lanes-inl.h.
+// The functions exp2 and log2, made of exact operations (add, multiply, floor, shifts), so that every vector
+// width and the scalar type give the same bits. The library's functions differ between targets. Per-target
+// include guard, see simd/lanes-inl.h.
 #include <hwy/highway.h>
 
 #if defined(HWSIM_SIMD_TRANSCENDENTAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -36,7 +36,7 @@ template <class F, class I>
 F log2_polynomial(F x) {
   x = max(x, F(1.17549435e-38f));
   const I bits = float_to_bits(x);
-  const I exponent = shift_right<23>(bits - I(0x3f3504f3));  // of sqrt(1/2): a signed shift floors
+  const I exponent = shift_right<23>(bits - I(0x3f3504f3));  // 0x3f3504f3 is sqrt(1/2); a signed shift floors
   const F m = bits_to_float(bits - shift_left<23>(exponent));
   const F t = (m - F(1.0f)) / (m + F(1.0f));
   const F t2 = t * t;

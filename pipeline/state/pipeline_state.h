@@ -97,7 +97,7 @@ struct CoverageState {
       false;  ///< shaders read what early tests left, which must be forced; else the primitive's
   bool override_output = false;    ///< a shader's output mask replaces the coverage; else it is ANDed
   bool alpha_to_coverage = false;  ///< by color 0's alpha; without effect if the shader writes a mask
-  bool alpha_dither = true;        ///< of alpha to coverage, over 2x2 pixels
+  bool alpha_dither = true;        ///< alpha to coverage dithers over 2x2 pixels
 };
 
 struct PipelineState {

@@ -66,8 +66,8 @@ std::span<const SamplePosition> standard_sample_positions(int samples) {
 }
 
 std::vector<SamplePosition> coverage_positions(int samples, int positions) {
-  // Of the standard pattern for all positions, those that the samples' own pattern stands for: one each, with
-  // the least sum of squared distances.
+  // Positions of the larger pattern that the samples' own pattern stands for: one a sample, with the least
+  // sum of squared distances.
   constexpr std::uint32_t k2Of4 = 0x9, k4Of8 = 0x5c, k4Of16 = 0xc28, k8Of16 = 0x3c66;
   const std::uint32_t replaced = samples == 2 && positions == 4    ? k2Of4
                                  : samples == 4 && positions == 8  ? k4Of8

@@ -1,4 +1,5 @@
 #pragma once
+// Where the samples of a pixel lie.
 #include <span>
 #include <vector>
 
@@ -21,7 +22,7 @@ std::vector<SamplePosition> coverage_positions(int samples, int positions);
 /// How passes of eight samples reach more (docs/techniques/forward.md#multicast): every layer has the same
 /// positions, squeezed into a part of the pixel, under a viewport of its own.
 struct MulticastPattern {
-  std::vector<SamplePosition> positions;  ///< of each layer
+  std::vector<SamplePosition> positions;  ///< the same in each layer
   std::vector<ViewportShift> viewports;   ///< one a layer
 };
 /// For 16 or 32 samples. Throws std::invalid_argument for other counts.

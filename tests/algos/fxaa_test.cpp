@@ -72,7 +72,7 @@ class ScalarFxaa {
     return result;
   }
 
-  /// Of the cross around a pixel, the value next to the middle of its contrast, as a part of the contrast.
+  /// In the cross around a pixel, the value next to the middle of its contrast, as a part of the contrast.
   float distance_to_middle(int x, int y) const {
     const std::array<float, 5> cross = {l(x, y), l(x, y - 1), l(x, y + 1), l(x - 1, y), l(x + 1, y)};
     const auto [low, high] = std::minmax_element(cross.begin(), cross.end());

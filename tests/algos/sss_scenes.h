@@ -12,7 +12,7 @@
 namespace hwsim::test::sss {
 using namespace pipeline;
 
-/// Of a frame, px.
+/// Size of a frame, px.
 constexpr int kSssWidth = 96, kSssHeight = 64;
 
 /// A cylinder along x with smooth normals; the eye looks at it along -z.

@@ -180,7 +180,7 @@ TEST(Sss, ASilhouetteKeepsItsAreaOverTheOtherTriangles) {
 // thick: the pixels' farthest depth is that of what lies behind both.
 TEST(Sss, WhatTheEdgeOfAWallHidesStaysHidden) {
   const float row =
-      2.0f * 6.0f * std::tan(0.25f) / static_cast<float>(kSssHeight);  // of a pixel, where z is 0
+      2.0f * 6.0f * std::tan(0.25f) / static_cast<float>(kSssHeight);  // height of a pixel, where z is 0
   Mesh mesh;
   add_cylinder(mesh, -0.75f * row, 0.16f * row, 12, 60);
   const auto wall = static_cast<std::uint32_t>(mesh.positions.size());

@@ -142,9 +142,9 @@ TEST(ColorTraffic, BlocksCompressWhereAllTheirPixelsHaveOneColor) {
   GpuConfig gpu = sample_gpu();
   gpu.msaa_color_block_bytes = 256;
   EXPECT_DOUBLE_EQ(color_ratio(color_pass(8), gpu), 0.5 / 8 + 0.5);    // blocks of 8 pixels
-  EXPECT_DOUBLE_EQ(color_ratio(color_pass(4), gpu), 0.25 / 4 + 0.75);  // of 16
+  EXPECT_DOUBLE_EQ(color_ratio(color_pass(4), gpu), 0.25 / 4 + 0.75);  // blocks of 16 pixels
   PassWork wide = color_pass(8);
-  wide.color_targets[0].format = Format::rgba16_float;  // of 4: between single pixels and groups of 8
+  wide.color_targets[0].format = Format::rgba16_float;  // blocks of 4: between single pixels and groups of 8
   const double in_4px = 4400.0 / 6400 + (0.5 - 4400.0 / 6400) * 2.0 / 3.0;
   EXPECT_DOUBLE_EQ(color_ratio(wide, gpu), in_4px / 8 + 1.0 - in_4px);
 }

@@ -1,6 +1,6 @@
 #pragma once
-#ifdef HWSIM_HAVE_GL_HEADERS
 // OpenGL without linking it: functions come from libEGL, opened at run time.
+#ifdef HWSIM_HAVE_GL_HEADERS
 #define EGL_NO_X11
 #include <EGL/egl.h>
 #include <EGL/eglext.h>

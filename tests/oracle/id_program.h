@@ -1,4 +1,5 @@
 #pragma once
+// Programs that show which triangle, and which sample, a pixel came from.
 #include "pipeline/batch/program.h"
 
 namespace hwsim::oracle {

@@ -60,10 +60,10 @@ struct Frame {
 };
 
 TEST(CoverageMap, TakesWholeBytesOfAPixel) {
-  EXPECT_EQ(coverage_map_bytes(4, 8), 3u);   // of 3 bits
-  EXPECT_EQ(coverage_map_bytes(4, 16), 6u);  // of 3 bits
-  EXPECT_EQ(coverage_map_bytes(8, 16), 8u);  // of 4 bits
-  EXPECT_EQ(coverage_map_bytes(2, 4), 1u);   // of 2 bits
+  EXPECT_EQ(coverage_map_bytes(4, 8), 3u);   // an entry has 3 bits
+  EXPECT_EQ(coverage_map_bytes(4, 16), 6u);  // an entry has 3 bits
+  EXPECT_EQ(coverage_map_bytes(8, 16), 8u);  // an entry has 4 bits
+  EXPECT_EQ(coverage_map_bytes(2, 4), 1u);   // an entry has 2 bits
   EXPECT_EQ(coverage_map_bytes(8, 0), 0u);
   const ImageDesc image{"color", Format::rgba8_unorm, 100, 10, 4, 1, 16};
   EXPECT_EQ(allocated_bytes(image), 1000u * (4 * 4 + 6));
