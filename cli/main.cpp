@@ -1,10 +1,10 @@
 #include <cstdio>
 #include <exception>
 
-#include "cli/arguments.h"
-#include "cli/commands.h"
-#include "cli/messages.h"
-#include "cli/simulate.h"
+#include "cli/arguments/arguments.h"
+#include "cli/commands/commands.h"
+#include "lab/base/messages.h"
+#include "lab/point/simulate.h"
 
 namespace hwsim::cli {
 namespace {

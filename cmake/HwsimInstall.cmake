@@ -11,12 +11,12 @@ target_compile_definitions(hwsim_pipeline INTERFACE
   $<INSTALL_INTERFACE:GLM_FORCE_DEPTH_ZERO_TO_ONE> $<INSTALL_INTERFACE:GLM_FORCE_RADIANS>
   $<INSTALL_INTERFACE:GLM_FORCE_XYZW_ONLY>)
 
-install(TARGETS hwsim_hwsim hwsim_pipeline hwsim_algos hwsim_cost_models EXPORT hwsimTargets
+install(TARGETS hwsim_hwsim hwsim_pipeline hwsim_algos hwsim_cost_models hwsim_lab EXPORT hwsimTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS hwsim_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS hwsim_image_io LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/hwsim ${PROJECT_SOURCE_DIR}/pipeline ${PROJECT_SOURCE_DIR}/algos
-        ${PROJECT_SOURCE_DIR}/cost_models
+        ${PROJECT_SOURCE_DIR}/cost_models ${PROJECT_SOURCE_DIR}/lab
         DESTINATION ${hwsim_include_dir} FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/configs DESTINATION ${CMAKE_INSTALL_DATADIR}/hwsim)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CHANGELOG.md

@@ -89,7 +89,7 @@ TEST(HelpTest, EveryCommandOfTheTopLevelIsTested) {
 TEST(HelpTest, ExplainsExactlyTheCodesThatTheSourcesUse) {
   const std::regex code("\"([A-Z][0-9]{3})\"");
   std::set<std::string> used;
-  for (const char* folder : {"hwsim", "pipeline", "algos", "cost_models", "cli"}) {
+  for (const char* folder : {"hwsim", "pipeline", "algos", "cost_models", "lab", "cli"}) {
     if (!fs::exists(fs::path(hwsim::test::source_dir()) / folder)) continue;
     for (const fs::directory_entry& entry :
          fs::recursive_directory_iterator(fs::path(hwsim::test::source_dir()) / folder)) {

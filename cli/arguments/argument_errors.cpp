@@ -1,0 +1,85 @@
+#include "cli/arguments/argument_errors.h"
+
+#include "cli/arguments/argument_values.h"
+#include "lab/base/messages.h"
+
+namespace hwsim::cli {
+
+const CLI::App& selected(const CLI::App& app, const std::vector<std::string>& words) {
+  const CLI::App* chosen = &app;
+  for (const std::string& word : words) {
+    const CLI::App* next = nullptr;
+    for (const CLI::App* sub : chosen->get_subcommands([](const CLI::App*) { return true; }))
+      if (sub->get_name() == word) next = sub;
+    if (!next) break;
+    chosen = next;
+  }
+  return *chosen;
+}
+
+std::vector<std::string> subcommand_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
+    if (!sub->get_name().empty())
+      names.push_back(sub->get_name());  // option groups are subcommands without a name
+  return names;
+}
+
+void check_command_names(const CLI::App& app, const std::vector<std::string>& words) {
+  const CLI::App& chosen = selected(app, words);
+  const std::vector<std::string> names = subcommand_names(chosen);
+  if (names.empty()) return;
+  const size_t depth = &chosen == &app ? 0 : 1;
+  const std::string lead = depth == 0 ? "" : chosen.get_name() + " ";
+  if (words.size() == depth)
+    fail_usage("U002", "no command given after `hwsim" + (depth == 0 ? "" : " " + chosen.get_name()) + "`",
+               "one of " + CLI::detail::join(names, ", "));
+  if (words[depth].starts_with("-")) return;
+  fail_usage("U001", "unknown command `" + lead + words[depth] + "`", did_you_mean(words[depth], names));
+}
+
+std::vector<FlagInfo> flags_of(const CLI::App& app) {
+  std::vector<FlagInfo> flags;
+  for (const CLI::Option* option :
+       app.get_options([](const CLI::Option* o) { return !o->get_positional(); })) {
+    FlagInfo flag;
+    for (const std::string& name : option->get_snames()) flag.names.push_back("-" + name);
+    for (const std::string& name : option->get_lnames()) flag.names.push_back("--" + name);
+    flag.description = option->get_description();
+    flag.takes_value = option->get_items_expected_max() > 0;
+    flags.push_back(std::move(flag));
+  }
+  for (const CLI::App* group :
+       app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); }))
+    for (FlagInfo& flag : flags_of(*group)) flags.push_back(std::move(flag));
+  return flags;
+}
+
+namespace {
+
+[[noreturn]] void fail_unknown_argument(const CLI::App& chosen, const std::string& argument) {
+  std::vector<std::string> names;
+  for (const FlagInfo& flag : flags_of(chosen))
+    names.insert(names.end(), flag.names.begin(), flag.names.end());
+  const std::string name = argument.substr(0, argument.find('='));
+  const std::string kind = argument.starts_with("-") ? "unknown flag `" : "unexpected argument `";
+  fail_usage("U001", kind + name + "`", did_you_mean(name, names),
+             "`hwsim " + chosen.get_name() + " --help` lists the flags");
+}
+
+}  // namespace
+
+void fail_parse(const CLI::ParseError& error, const CLI::App& app, const std::vector<std::string>& words) {
+  const CLI::App& chosen = selected(app, words);
+  const std::string help = "`hwsim " + chosen.get_name() + " --help` lists the flags";
+  std::string message = error.what();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
+    const auto rest = app.remaining(true);
+    if (!rest.empty()) fail_unknown_argument(chosen, rest.front());
+  }
+  if (dynamic_cast<const CLI::RequiredError*>(&error)) fail_usage("U002", message, "", help);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) fail_usage("U004", message, "", help);
+  fail_usage("U003", message, "", help);
+}
+
+}  // namespace hwsim::cli

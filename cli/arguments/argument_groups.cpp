@@ -1,0 +1,150 @@
+#include "cli/arguments/argument_groups.h"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <thread>
+
+#include "cli/arguments/argument_values.h"
+#include "lab/base/messages.h"
+#include "lab/base/text.h"
+
+namespace hwsim::cli {
+namespace {
+
+/// A flag whose value is one of a few words.
+template <class T>
+void add_choice(CLI::App& app, const std::string& flag, std::string description,
+                std::map<std::string, T> choices, std::function<void(T)> set,
+                const std::string& environment = {}) {
+  std::vector<std::string> words;
+  for (const auto& [word, value] : choices) words.push_back(word);
+  CLI::Option* option = app.add_option_function<std::string>(
+      flag,
+      [=](const std::string& text) {
+        if (const auto found = choices.find(text); found != choices.end()) return set(found->second);
+        fail_usage("U003", flag + " is `" + text + "`, must be " + CLI::detail::join(words, ", "),
+                   did_you_mean(text, words));
+      },
+      std::move(description));
+  option->type_name(CLI::detail::join(words, "|"));
+  if (!environment.empty()) option->envname(environment);
+}
+
+}  // namespace
+
+CLI::Option* add_repeatable(CLI::App& app, const std::string& flag, std::vector<std::string>& target,
+                            std::string description, const std::string& type) {
+  return app.add_option(flag, target, std::move(description))->allow_extra_args(false)->type_name(type);
+}
+
+void add_common(CLI::App& app, CommonOptions& common) {
+  CLI::App* group = app.add_option_group("Output and progress");
+  group
+      ->add_option_function<std::vector<std::string>>(
+          "--format",
+          [&common](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) common.formats.push_back(parse_format(text));
+          },
+          "Shape of the answer; FORMAT=FILE writes it to a file (repeatable)")
+      ->allow_extra_args(false)
+      ->type_name("table|csv|json|md");
+  group->add_flag_callback(
+      "--json",
+      [&common] {
+        common.formats.push_back({Format::json, ""});
+      },
+      "--format json");
+  group->add_flag_callback(
+      "-q,--quiet", [&common] { common.verbosity = -1; }, "Only the answer and errors");
+  group->add_flag_callback(
+      "-v,--verbose", [&common] { common.verbosity = 1; }, "Say more on standard error");
+  const std::map<std::string, When> when = {
+      {"auto", When::automatic}, {"always", When::always}, {"never", When::never}};
+  add_choice<When>(
+      *group, "--color", "Colored messages; NO_COLOR and TERM=dumb are obeyed", when,
+      [&common](When value) { common.color = value; }, "HWSIM_COLOR");
+  add_choice<When>(
+      *group, "--progress", "Progress bar; auto: only on a terminal", when,
+      [&common](When value) { common.progress = value; }, "HWSIM_PROGRESS");
+  common.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  group->add_option("--jobs", common.jobs, "Threads; the results do not depend on it")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N")
+      ->envname("HWSIM_JOBS");
+}
+
+void add_sets(CLI::App& app, std::vector<std::string>& sets) {
+  add_repeatable(app, "--set", sets,
+                 "gpu., scene., technique., emulator. or timing. setting (repeatable, last wins)",
+                 "PATH=VALUE");
+}
+
+void add_overlays(CLI::App& app, std::vector<std::string>& overlays) {
+  add_repeatable(app, "--overlay", overlays,
+                 "A what-if of `hwsim list overlays`, or a .toml file, laid over the GPU (repeatable)",
+                 "NAME|FILE");
+}
+
+void add_out(CLI::App& app, OutPlace& out) {
+  app.add_option("--out", out.directory, "Folder for the results; default runs/<date>-<time>-<id>")
+      ->type_name("DIR");
+  app.add_flag("--force", out.force, "Replace the results in --out");
+}
+
+void add_view_flags(CLI::App& app, ViewOptions& view) {
+  app.add_option_function<std::string>(
+         "--resolution", [&view](const std::string& text) { view.resolution = parse_resolution(text); },
+         "Pixels, 1 to 16384 each way; default 1280x720")
+      ->type_name("WxH");
+  app.add_option("--camera", view.camera, "A camera of the scene; default the first")
+      ->type_name("NAME|INDEX");
+  app.add_option("--lights", view.point_lights, "Point lights added to those of the scene")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N");
+  app.add_flag("--no-shadows", view.no_shadows, "No shadow map");
+  add_sets(app, view.sets);
+}
+
+void add_view(CLI::App& app, ViewOptions& view, bool required) {
+  app.add_option("SCENE", view.scene, "A .gltf or .glb file, or a generator: name:key=value,key=value")
+      ->required(required)
+      ->type_name(" ");
+  add_view_flags(app, view);
+}
+
+void add_points(CLI::App& app, RunOptions& run) {
+  app.add_option_function<std::vector<std::string>>(
+         "-t,--technique",
+         [&run](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts)
+             for (std::string& technique : split_techniques(text))
+               run.techniques.push_back(std::move(technique));
+         },
+         "Techniques, separated by commas (repeatable); default none")
+      ->allow_extra_args(false)
+      ->type_name("NAME[:key=value]");
+  add_repeatable(app, "-g,--gpu", run.gpus, "A GPU of `hwsim list gpus`, or a .toml file (repeatable)",
+                 "NAME|FILE")
+      ->envname("HWSIM_GPU");
+  add_overlays(app, run.overlays);
+  app.add_option("--engine", run.engine, "Timing engine; default queue")
+      ->type_name("roofline|queue|detailed");
+  app.add_flag("--no-cache", run.no_cache, "Emulate anew, and keep no traces");
+}
+
+void add_reference_samples(CLI::App& app, RunOptions& run) {
+  app.add_option("--reference", run.reference_samples,
+                 "Compare with the ray-traced reference of so many samples a pixel; default 64")
+      ->check(CLI::Range(1, 65536))
+      ->type_name("[SAMPLES]");
+  app.add_flag("--no-image", run.no_image, "Write no images");
+}
+
+void add_vary(CLI::App& app, std::vector<std::string>& vary, bool& zip) {
+  add_repeatable(app, "--vary", vary, "Values of a setting: a,b,c or lo..hi:n or lo..hi:n:log (repeatable)",
+                 "PATH=VALUES");
+  app.add_flag("--zip", zip, "Vary all together instead of every combination");
+}
+
+}  // namespace hwsim::cli

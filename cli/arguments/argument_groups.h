@@ -1,0 +1,26 @@
+#pragma once
+// Flags that several commands share, each group declared once.
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/arguments/arguments.h"
+
+namespace hwsim::cli {
+
+/// A flag that may be given several times, with one value each time.
+CLI::Option* add_repeatable(CLI::App& app, const std::string& flag, std::vector<std::string>& target,
+                            std::string description, const std::string& type);
+void add_common(CLI::App& app, CommonOptions& common);
+void add_sets(CLI::App& app, std::vector<std::string>& sets);
+void add_overlays(CLI::App& app, std::vector<std::string>& overlays);
+void add_out(CLI::App& app, OutPlace& out);
+void add_view_flags(CLI::App& app, ViewOptions& view);
+/// The scene itself, then the flags of its view.
+void add_view(CLI::App& app, ViewOptions& view, bool required);
+/// Which techniques on which GPUs.
+void add_points(CLI::App& app, RunOptions& run);
+void add_reference_samples(CLI::App& app, RunOptions& run);
+void add_vary(CLI::App& app, std::vector<std::string>& vary, bool& zip);
+
+}  // namespace hwsim::cli

@@ -1,0 +1,17 @@
+#pragma once
+// Values of flags that have a syntax of their own. Mistakes are InputErrors with ExitStatus::usage.
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/arguments/options.h"
+
+namespace hwsim::cli {
+
+/// "csv" or "csv=passes.csv". Throws InputError U003.
+FormatRequest parse_format(const std::string& text);
+
+/// "1280x720". Throws InputError U005.
+Resolution parse_resolution(std::string_view text);
+
+}  // namespace hwsim::cli

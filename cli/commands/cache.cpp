@@ -1,0 +1,49 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "cli/commands/commands.h"
+#include "cli/terminal/answer.h"
+#include "lab/base/messages.h"
+#include "lab/base/table.h"
+#include "lab/store/cache.h"
+
+namespace hwsim::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+Table file_table(const std::vector<CachedFile>& files) {
+  Table table{
+      {{"folder", "folder"}, {"file", "file"}, {"bytes", "bytes", true}, {"age_days", "age, days", true}},
+      {}};
+  for (const CachedFile& file : files)
+    table.rows.push_back({file.folder, file.path.filename().string(), file.bytes, Real{file.age_days, 1}});
+  return table;
+}
+
+}  // namespace
+
+ExitStatus cache(const CacheOptions& options, Context& context) {
+  std::vector<CachedFile> files = cached_files();
+  if (options.prune && options.keep_mib)
+    files = least_recently_used(std::move(files), std::uint64_t{*options.keep_mib} << 20);
+  else if (options.prune && !options.all)
+    std::erase_if(files, [&](const CachedFile& file) { return file.age_days < options.older_than_days; });
+  std::uint64_t bytes = 0;
+  for (const CachedFile& file : files) bytes += file.bytes;
+  if (options.prune && !options.dry_run)
+    for (const CachedFile& file : files) {
+      std::error_code error;
+      fs::remove(file.path, error);
+      if (error) fail("U010", "cannot remove `" + file.path.string() + "`: " + error.message());
+    }
+  print({.table = file_table(files)}, options.common);
+  const char* verb = !options.prune ? "in" : options.dry_run ? "would be removed from" : "removed from";
+  context.log.say(fmt::format("{} files, {:.1f} MiB {} {}", files.size(),
+                              static_cast<double>(bytes) / (1024.0 * 1024.0), verb,
+                              fs::path(cache_directory(CacheFolder::scenes)).parent_path().string()));
+  return ExitStatus::done;
+}
+
+}  // namespace hwsim::cli

@@ -1,0 +1,67 @@
+#include <cstdio>
+
+#include "cli/commands/commands.h"
+#include "cli/terminal/answer.h"
+#include "lab/base/messages.h"
+#include "lab/catalog/gpu_view.h"
+#include "lab/request/run_file.h"
+
+namespace hwsim::cli {
+namespace {
+
+void write_text(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+
+/// Every file is looked at before the first mistake is reported. A file of kind "run" is one too.
+ExitStatus check(const ConfigOptions& options) {
+  std::vector<Diagnostic> problems;
+  Table table{{{"file", "file"}, {"id", "id"}, {"state", "state"}}, {}};
+  for (const std::string& name : options.names) try {
+      if (name.ends_with("run.toml")) {
+        load_gpu_from_options(read_run_file(name).gpus.front(), {}, {});
+        table.rows.push_back({name, "run", "ok"});
+      } else {
+        table.rows.push_back({name, load_gpu_from_options(name, {}, {}).id, "ok"});
+      }
+    } catch (const InputError& error) {
+      problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+  print({.table = table}, options.common);
+  if (!problems.empty()) throw InputError(problems);
+  return ExitStatus::done;
+}
+
+void check_kind(const ConfigOptions& options) {
+  if (options.names.empty() || options.names.front() == "gpu") return;
+  fail_usage("U003", "no schema of `" + options.names.front() + "`, only of gpu");
+}
+
+}  // namespace
+
+ExitStatus config(const ConfigOptions& options, Context& context) {
+  using Action = ConfigOptions::Action;
+  const auto load = [&](size_t i) {
+    return load_gpu_from_options(options.names[i], options.overlays, options.sets);
+  };
+  switch (options.action) {
+    case Action::check:
+      return check(options);
+    case Action::show:
+      if (options.common.formats.empty())
+        write_text(show(load(0), options.origin));
+      else
+        print({.table = key_table(load(0), options.origin)}, options.common);
+      break;
+    case Action::schema:
+      check_kind(options);
+      write_text(gpu_schema_json());
+      break;
+    case Action::diff: {
+      const Table table = difference_table(load(0), load(1));
+      print({.table = table}, options.common);
+      if (table.rows.empty()) context.log.say("no differences");
+    }
+  }
+  return ExitStatus::done;
+}
+
+}  // namespace hwsim::cli

@@ -1,0 +1,56 @@
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+
+#include "cli/arguments/arguments.h"
+#include "cli/commands/commands.h"
+#include "cli/terminal/answer.h"
+#include "lab/base/messages.h"
+#include "lab/base/table.h"
+#include "lab/catalog/error_codes.h"
+
+namespace hwsim::cli {
+namespace {
+
+bool looks_like_code(const std::string& topic) {
+  return topic.size() == 4 && std::isalpha(static_cast<unsigned char>(topic[0])) != 0 &&
+         std::all_of(topic.begin() + 1, topic.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+void print_codes(const HelpOptions& options) {
+  Table table{{{"code", "code"}, {"title", "means"}}, {}};
+  for (const ErrorCode& code : error_codes())
+    table.rows.push_back({std::string(code.code), std::string(code.title)});
+  print({.table = table, .heading = "hwsim help CODE explains one:\n\n"}, options.common);
+}
+
+ExitStatus explain(std::string topic) {
+  topic[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(topic[0])));
+  for (const ErrorCode& code : error_codes())
+    if (code.code == topic) {
+      std::printf("%s: %s\n\n%s\n", topic.c_str(), std::string(code.title).c_str(),
+                  std::string(code.explanation).c_str());
+      return ExitStatus::done;
+    }
+  fail_usage("U014", "no message has the code `" + topic + "`", "", "`hwsim help` lists the codes");
+}
+
+}  // namespace
+
+ExitStatus help(const HelpOptions& options, Context&) {
+  if (options.topic.empty()) {
+    print_codes(options);
+    return ExitStatus::done;
+  }
+  if (looks_like_code(options.topic)) return explain(options.topic);
+  if (const auto text = help_text(options.topic)) {
+    std::fputs(text->c_str(), stdout);
+    return ExitStatus::done;
+  }
+  std::vector<std::string> names;
+  for (const CommandInfo& command : describe_commands()) names.push_back(command.name);
+  fail_usage("U014", "no help on `" + options.topic + "`", did_you_mean(options.topic, names),
+             "`hwsim help` lists the codes, `hwsim --help` the commands");
+}
+
+}  // namespace hwsim::cli

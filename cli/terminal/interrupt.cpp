@@ -1,0 +1,46 @@
+#include "cli/terminal/interrupt.h"
+
+#include <unistd.h>
+
+#include <csignal>
+
+namespace hwsim::cli {
+
+namespace fs = std::filesystem;
+
+InterruptGuard::InterruptGuard(std::string message) : message_("\n" + std::move(message) + "\n") {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR2}) sigaddset(&set, signal);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  thread_ = std::thread([this] { wait(); });
+}
+
+InterruptGuard::~InterruptGuard() {
+  pthread_kill(thread_.native_handle(), SIGUSR2);  // ends wait()
+  thread_.join();
+}
+
+void InterruptGuard::wait() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR2}) sigaddset(&set, signal);
+  int signal = 0;
+  sigwait(&set, &signal);
+  if (signal == SIGUSR2) return;
+  const std::lock_guard lock(mutex_);
+  std::error_code ignored;
+  // Other threads may be creating files in it: two attempts, then the name still says that it is partial.
+  for (int attempt = 0; attempt < 2 && !folder_.empty(); ++attempt) fs::remove_all(folder_, ignored);
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, message_.data(), message_.size());
+  ::_exit(128 + signal);
+}
+
+void InterruptGuard::remove_on_interrupt(const fs::path& folder) {
+  const std::lock_guard lock(mutex_);
+  folder_ = folder;
+}
+
+void InterruptGuard::keep() { remove_on_interrupt({}); }
+
+}  // namespace hwsim::cli

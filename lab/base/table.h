@@ -1,0 +1,39 @@
+#pragma once
+// One table, four shapes: text, CSV, JSON, Markdown.
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace hwsim::lab {
+
+/// There is no such value here; never shown as 0.
+struct NotApplicable {};
+struct Real {
+  double value = 0.0;
+  int decimals = 2;  ///< in text and Markdown; CSV and JSON carry every digit
+};
+using Cell = std::variant<NotApplicable, std::string, std::uint64_t, Real>;
+
+struct Column {
+  std::string id;     ///< CSV header and JSON key
+  std::string title;  ///< text and Markdown
+  bool right = false;
+  std::size_t wrap_columns = 0;  ///< 0: as wide as its longest cell
+};
+
+struct Table {
+  std::vector<Column> columns;
+  std::vector<std::vector<Cell>> rows;
+};
+
+std::string to_text(const Table& table);
+std::string to_csv(const Table& table);  ///< RFC 4180: one header line, CRLF
+std::string to_markdown(const Table& table);
+nlohmann::ordered_json to_json(const Table& table);  ///< an array of objects
+
+/// Digits that read back to the same value.
+std::string exact(double value);
+
+}  // namespace hwsim::lab

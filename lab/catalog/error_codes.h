@@ -1,0 +1,15 @@
+#pragma once
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace hwsim::lab {
+
+struct ErrorCode {
+  std::string_view code, title, explanation;
+};
+
+/// Every code of a message, sorted. A test compares them with those that the sources use.
+std::vector<ErrorCode> error_codes();
+
+}  // namespace hwsim::lab

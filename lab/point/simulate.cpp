@@ -1,0 +1,52 @@
+#include "lab/point/simulate.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+
+#include "lab/store/calibration_files.h"
+
+namespace hwsim::lab {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+PointResult Simulator::run(const algos::TechniqueChoice& technique, const GpuConfig& gpu,
+                           const ProgressFunction& progress) {
+  PointResult point;
+  point.technique = &technique;
+  point.gpu = &gpu;
+  const EmulatedFrame frame =
+      store_.frame(scene_, technique, gpu, {plan_.skip, plan_.images || reference_ != nullptr}, progress);
+  point.emulation = frame.emulation;
+  point.from_cache = frame.from_cache;
+  const auto start = std::chrono::steady_clock::now();
+  point.timing = time_frame(point.emulation->trace, gpu, plan_.engine, plan_.timing);
+  point.timing_wall_s = seconds_since(start);
+  check_invariants(point.emulation->trace, point.timing, gpu);
+  if (plan_.calibrated)
+    add_interval(point.timing, point.emulation->trace, gpu, algos::technique_text(technique));
+  if (reference_)
+    point.image_error = pipeline::compare(point.emulation->color, reference_->image, &point.flip_map);
+  return point;
+}
+
+void check_invariants(const WorkTrace& trace, const FrameTiming& timing, const GpuConfig& gpu) {
+  std::string violations;
+  for (const PassWork& pass : trace.passes) {
+    std::array<CounterViolation, 64> storage;
+    for (const CounterViolation& v : check_conservation(total(pass), storage))
+      violations += fmt::format("\n  pass {}: {} ({} against {})", pass.name, v.law, v.left, v.right);
+  }
+  for (const std::string& sentence : check_timing(timing, trace, gpu)) violations += "\n  " + sentence;
+  if (!violations.empty())
+    throw InternalError(
+        fmt::format("technique {} on {} violates invariants:{}", trace.technique, gpu.id, violations));
+}
+
+}  // namespace hwsim::lab

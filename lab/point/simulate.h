@@ -1,0 +1,62 @@
+#pragma once
+// One point of a plan: a technique executed on a scene and timed on a GPU.
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "lab/store/trace_store.h"
+#include "pipeline/image/metrics.h"
+
+namespace hwsim::lab {
+
+/// A law that hwsim itself broke. Not the user's mistake: exit status 1, and the manifest is printed to
+/// attach.
+class InternalError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct ReferenceImage {
+  pipeline::Image image;
+  int samples = 0;
+  double wall_s = 0.0;
+  bool from_cache = false;
+};
+
+/// Ray-traces the view, or takes it from the cache.
+ReferenceImage make_reference(SceneView& scene, int samples, int jobs, const ProgressFunction& progress);
+
+struct PointResult {
+  const algos::TechniqueChoice* technique = nullptr;
+  const GpuConfig* gpu = nullptr;
+  std::shared_ptr<const pipeline::Emulation> emulation;
+  bool from_cache = false;  ///< an earlier point, or an earlier run, emulated the same work
+  FrameTiming timing;
+  double timing_wall_s = 0.0;
+  std::optional<pipeline::ImageError> image_error;
+  pipeline::Image flip_map;  ///< empty without a reference
+};
+
+/// Runs the points of one plan; GPUs that share a functional configuration share an emulation.
+class Simulator {
+ public:
+  Simulator(const RunPlan& plan, SceneView& scene, const ReferenceImage* reference, TraceStore& store)
+      : plan_(plan), scene_(scene), reference_(reference), store_(store) {}
+  /// Throws InputError, or InternalError when an invariant is violated.
+  PointResult run(const algos::TechniqueChoice& technique, const GpuConfig& gpu,
+                  const ProgressFunction& progress);
+
+ private:
+  const RunPlan& plan_;
+  SceneView& scene_;
+  const ReferenceImage* reference_;
+  TraceStore& store_;
+};
+
+/// The invariants of every run; throws InternalError with all that are violated.
+void check_invariants(const WorkTrace& trace, const FrameTiming& timing, const GpuConfig& gpu);
+
+}  // namespace hwsim::lab

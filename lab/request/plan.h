@@ -1,0 +1,43 @@
+#pragma once
+// A request with every value decided and every name found, before anything is loaded or drawn.
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "algos/techniques.h"
+#include "hwsim/engines/timing.h"
+#include "hwsim/gpu/gpu_config.h"
+#include "lab/request/request.h"
+#include "pipeline/emulate/emulator.h"
+
+namespace hwsim::lab {
+
+struct RunPlan {
+  View view;
+  std::vector<algos::TechniqueChoice> techniques;
+  std::vector<GpuConfig> gpus;
+  Engine engine = Engine::queue;
+  TimingOptions timing;
+  pipeline::SkipSwitches skip;
+  int reference_samples = 0;  ///< 0: no reference
+  bool images = true;
+  bool calibrated = true;  ///< fitted numbers and intervals, where there are
+  std::vector<Assignment> overrides;
+};
+
+/// Appends every problem found to `problems`; the plan is complete when there is none.
+RunPlan make_plan(const Request& request, std::vector<Diagnostic>& problems);
+
+/// The same, with all problems thrown as one InputError.
+RunPlan make_plan(const Request& request);
+
+/// What a plan has decided, as the settings of a request.
+Settings settings_of(const RunPlan& plan);
+
+/// "scene", "simple" or "complex"; nothing for other names.
+std::optional<algos::LightProfile> light_profile_from_name(std::string_view name);
+
+/// "all", "none", or the names of those that are on.
+std::string skip_text(const pipeline::SkipSwitches& skip);
+
+}  // namespace hwsim::lab

@@ -1,0 +1,121 @@
+#include "lab/request/request.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "hwsim/config/assign.h"
+#include "hwsim/config/settings.h"
+#include "lab/request/image_input.h"
+#include "lab/request/run_file.h"
+
+namespace hwsim::lab {
+namespace {
+
+struct FieldCollector {
+  std::vector<Field> fields;
+  template <class Value>
+  void field(const FieldInfo& info, Value& value) {
+    fields.push_back({info, KeySlot(&value)});
+  }
+};
+
+template <class Part>
+std::vector<Field> collect(Part& part) {
+  FieldCollector collector;
+  describe(collector, part);
+  return std::move(collector.fields);
+}
+
+template <class Part>
+std::string key_text_of(Part part, FieldUse use) {  // a copy: slots are not for constants
+  std::string text;
+  for (const Field& field : collect(part))
+    if ((field.info.uses & use) != 0)
+      text +=
+          fmt::format("{}{} {}", text.empty() ? "" : " ", field.info.key.name, to_toml(value_in(field.slot)));
+  return text;
+}
+
+std::vector<Key> settable(const std::vector<Field>& fields, std::string_view group) {
+  std::vector<Key> keys;
+  for (const Field& field : fields)
+    if (field.info.group == group) keys.push_back({field.info.key, field.slot});
+  return keys;
+}
+
+bool is_scene_file(const std::string& scene) {
+  return scene.ends_with(".gltf") || scene.ends_with(".glb") || is_image_file(scene);
+}
+
+std::string key_of(const Assignment& set) { return set.path.substr(set.path.find('.') + 1); }
+
+/// scene.* holds values of the view and, for a generated scene, the generator's own parameters; the generator
+/// checks the latter.
+void apply_to_view(View& view, const std::vector<Assignment>& sets, std::vector<Diagnostic>& problems) {
+  const std::vector<Key> keys = settable(fields_of(view), "scene");
+  std::vector<Assignment> own, generator;
+  for (const Assignment& set : sets) {
+    if (set.group() != "scene") continue;
+    const bool known = std::ranges::any_of(keys, [&](const Key& k) { return k.info.name == key_of(set); });
+    (known || is_scene_file(view.scene) ? own : generator).push_back(set);
+  }
+  apply_settings("scene", keys, own, problems);
+  view.scene = with_parameters(view.scene, generator);
+}
+
+}  // namespace
+
+std::vector<Field> fields_of(View& view) { return collect(view); }
+std::vector<Field> fields_of(Settings& settings) { return collect(settings); }
+
+std::string key_text(const View& view, FieldUse use) { return key_text_of(view, use); }
+std::string key_text(const Settings& settings, FieldUse use) { return key_text_of(settings, use); }
+
+Request open_request(const std::string& scene_or_run_file) {
+  if (scene_or_run_file.ends_with(".toml")) return read_run_file(scene_or_run_file);
+  Request request;
+  request.view.scene = scene_or_run_file;
+  return request;
+}
+
+void apply(Request& request, const std::vector<Assignment>& sets, std::vector<Diagnostic>& problems) {
+  try {
+    check_groups(sets, std::vector<std::string>{"gpu", "scene", "technique", "emulator", "timing"});
+  } catch (const InputError& error) {
+    append(problems, error);
+  }
+  const std::vector<Field> fields = fields_of(request.settings);
+  for (const std::string_view group : {"emulator", "timing"})
+    apply_settings(group, settable(fields, group), sets, problems);
+  apply_to_view(request.view, sets, problems);
+  request.sets.insert(request.sets.end(), sets.begin(), sets.end());
+}
+
+std::string with_parameters(const std::string& text, const std::vector<Assignment>& parameters) {
+  std::string result = text;
+  for (const Assignment& set : parameters) {
+    const std::string key = key_of(set) + "=";
+    const auto colon = result.find(':');
+    if (colon == std::string::npos) {
+      result += ":" + key + set.value;
+      continue;
+    }
+    size_t at = colon + 1;
+    while (at < result.size() && result.compare(at, key.size(), key) != 0) {
+      const auto comma = result.find(',', at);
+      at = comma == std::string::npos ? result.size() : comma + 1;
+    }
+    if (at < result.size())
+      result.replace(at, std::min(result.find(',', at), result.size()) - at, key + set.value);
+    else
+      result += "," + key + set.value;
+  }
+  return result;
+}
+
+void append(std::vector<Diagnostic>& problems, const InputError& error) {
+  problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
+}
+
+}  // namespace hwsim::lab

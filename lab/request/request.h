@@ -1,0 +1,176 @@
+#pragma once
+// What is asked of the lab, as plain data with defaults. Each value is declared once, in `describe`: from
+// that line follow
+// `--set`, run.toml both ways, the keys of every cache, and the manifest. A member without a declaration does
+// not compile.
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hwsim/base/diagnostics.h"
+#include "hwsim/config/key.h"
+#include "hwsim/config/toml_value.h"
+
+namespace hwsim::lab {
+
+inline constexpr int kDefaultReferenceSamples = 64;
+inline constexpr int kMaxSidePx = 16384;  ///< the largest Direct3D 11 texture
+inline constexpr int kMaxPointLights = 1024;
+inline constexpr int kMaxReferenceSamples = 65536;
+
+struct Resolution {
+  int width_px = 1280;
+  int height_px = 720;
+  bool operator==(const Resolution&) const = default;
+};
+
+/// What is drawn, before any technique.
+struct View {
+  std::string
+      scene;  ///< as pipeline::open_scene takes it: a path, or a generator with its parameters; or an image
+  Resolution resolution;
+  std::string camera = "0";  ///< a name or an index
+  int point_lights = 0;
+  double light_range = 0.15;
+  std::string lights = "scene";
+  bool shadows = true;
+  int shadow_map_px = 2048;
+  bool operator==(const View&) const = default;
+};
+
+/// How the view is executed and timed.
+struct Settings {
+  std::string skip = "all";
+  std::string engine = "queue";
+  double detailed_sample = 1.0;
+  bool calibrated = true;
+  int reference_samples = 0;  ///< 0: no reference
+  bool images = true;
+  bool operator==(const Settings&) const = default;
+};
+
+/// A view, drawn with each technique and timed on each GPU.
+struct Request {
+  View view;
+  Settings settings;
+  std::vector<std::string> techniques = {"none"};
+  std::vector<std::string> gpus = {"gtx980"};
+  std::vector<std::string> overlays{};  ///< laid over each GPU
+  std::vector<Assignment>
+      sets{};  ///< in the order in which they were given; technique.* and gpu.* act in the plan
+};
+
+/// What depends on a value.
+enum FieldUse : unsigned {
+  kNothing = 0,
+  kWork = 1,       ///< the work trace: part of its cache's key
+  kReference = 2,  ///< the ray-traced reference: part of its cache's key
+};
+
+/// The declaration of one value of a request.
+struct FieldInfo {
+  KeyInfo key;                     ///< name, range, meaning
+  std::string_view group = "";     ///< of `--set GROUP.NAME`; empty: no `--set` reaches it
+  std::string_view file_key = "";  ///< in run.toml; empty: not recorded
+  unsigned uses = kNothing;
+  std::string_view choices = "";  ///< "scene|simple|complex"; empty: any value of the type
+};
+
+/// A declaration with the address of its value.
+struct Field {
+  FieldInfo info;
+  KeySlot slot;
+};
+
+template <class Visitor>
+void describe(Visitor& v, View& view) {
+  auto& [scene, resolution, camera, point_lights, light_range, lights, shadows, shadow_map_px] = view;
+  auto& [width_px, height_px] = resolution;
+  // The scene's content and the camera's index stand in the keys of caches, not what the user called them.
+  v.field(
+      {{"scene", 0, 0, kNoFlags, "a glTF file, a generator with its parameters, or an image"}, "", "scene"},
+      scene);
+  v.field({{"width_px", 1, kMaxSidePx, kNoFlags, "width of the frame"}, "", "width_px", kWork | kReference},
+          width_px);
+  v.field(
+      {{"height_px", 1, kMaxSidePx, kNoFlags, "height of the frame"}, "", "height_px", kWork | kReference},
+      height_px);
+  v.field({{"camera", 0, 0, kNoFlags, "name or index of a camera of the scene"}, "", "camera"}, camera);
+  v.field({{"point_lights", 0, kMaxPointLights, kNoFlags, "seeded point lights added to those of the scene"},
+           "scene",
+           "point_lights",
+           kWork | kReference},
+          point_lights);
+  v.field({{"light_range", 1e-3, 100, kNoFlags,
+            "reach of the lights that are added (also by lights=complex), over the scene's diagonal"},
+           "scene",
+           "light_range",
+           kWork | kReference},
+          light_range);
+  v.field({{"lights", 0, 0, kNoFlags, "scene, simple (one light) or complex (16 lights)"},
+           "scene",
+           "lights",
+           kWork | kReference,
+           "scene|simple|complex"},
+          lights);
+  v.field({{"shadows", 0, 1, kNoFlags, "a shadow map for the light that casts shadows"},
+           "scene",
+           "shadows",
+           kWork | kReference},
+          shadows);
+  v.field({{"shadow_map_px", 16, kMaxSidePx, kNoFlags, "side of the shadow map"},
+           "scene",
+           "shadow_map_px",
+           kWork},
+          shadow_map_px);
+}
+
+template <class Visitor>
+void describe(Visitor& v, Settings& settings) {
+  auto& [skip, engine, detailed_sample, calibrated, reference_samples, images] = settings;
+  v.field({{"skip", 0, 0, kNoFlags,
+            "work to leave out: all, none, or some of the skips by name, separated by commas"},
+           "emulator",
+           "emulator_skip",
+           kWork},
+          skip);
+  v.field({{"engine", 0, 0, kNoFlags, "roofline, queue or detailed"}, "timing", "engine"}, engine);
+  v.field({{"detailed_sample", 1e-3, 1, kNoFlags, "engine detailed: part of a pass that is simulated"},
+           "timing",
+           "detailed_sample"},
+          detailed_sample);
+  v.field({{"calibrated", 0, 0, kNoFlags,
+            "the fitted numbers of a GPU, where there are, not the documented ones"},
+           "timing"},
+          calibrated);
+  v.field({{"reference_samples", 0, kMaxReferenceSamples, kNoFlags,
+            "samples a pixel of the ray-traced reference; 0: none"},
+           "",
+           "reference_samples"},
+          reference_samples);
+  v.field({{"images", 0, 0, kNoFlags, "images are written"}}, images);
+}
+
+/// Every value of a view, or of settings, in the order of their declaration.
+std::vector<Field> fields_of(View& view);
+std::vector<Field> fields_of(Settings& settings);
+
+/// "width_px 1280 height_px 720 ...": the values on which `use` depends, for a cache's key.
+std::string key_text(const View& view, FieldUse use);
+std::string key_text(const Settings& settings, FieldUse use);
+
+/// A run.toml becomes its request, anything else a request with that scene and defaults. Throws InputError
+/// for a damaged file.
+Request open_request(const std::string& scene_or_run_file);
+
+/// Applies settings of the groups scene, emulator and timing to the request's values, adds parameters of a
+/// generated scene to its name, and keeps all of them in request.sets. Appends what is wrong to `problems`.
+void apply(Request& request, const std::vector<Assignment>& sets, std::vector<Diagnostic>& problems);
+
+/// "grass:seed=3" with further parameters or other values for those that it has.
+std::string with_parameters(const std::string& text, const std::vector<Assignment>& parameters);
+
+/// Appends the diagnostics of a caught error.
+void append(std::vector<Diagnostic>& problems, const InputError& error);
+
+}  // namespace hwsim::lab

@@ -1,0 +1,114 @@
+#include "lab/results/run_files.h"
+
+#include <fmt/format.h>
+#include <sys/utsname.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "lab/base/build_info.h"
+#include "lab/base/files.h"
+#include "lab/request/run_file.h"
+#include "pipeline/image/image_io.h"
+
+namespace hwsim::lab {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string host_text() {
+  utsname names{};
+  if (uname(&names) != 0) return "unknown";
+  return fmt::format("{} {} {}", names.sysname, names.release, names.machine);
+}
+
+float largest(const pipeline::Image& values) {
+  float result = 0.0f;
+  for (const glm::vec4& pixel : values.pixels) result = std::max(result, pixel.x);
+  return result;
+}
+
+void write_images(const std::string& folder, const PointResult& point, const ReferenceImage* reference) {
+  const pipeline::Emulation& emulation = *point.emulation;
+  pipeline::write_image(emulation.color, folder + "/color.png");
+  pipeline::write_image(emulation.color, folder + "/color.exr");
+  pipeline::write_image(heat_picture(emulation.shading_heat, std::max(1.0f, largest(emulation.shading_heat))),
+                        folder + "/heat_shading.png");
+  if (!reference) return;
+  pipeline::write_image(reference->image, folder + "/reference.png");
+  pipeline::write_image(reference->image, folder + "/reference.exr");
+  pipeline::write_image(heat_picture(point.flip_map, 1.0f), folder + "/flip.png");
+  pipeline::write_image(point.flip_map, folder + "/flip.exr");
+}
+
+}  // namespace
+
+pipeline::Image heat_picture(const pipeline::Image& values, float full_scale) {
+  pipeline::Image picture(values.width, values.height);
+  for (size_t i = 0; i < values.pixels.size(); ++i) {
+    // The map's colors are meant as displayed; the PNG writer encodes.
+    const glm::vec3 shown = pipeline::magma(values.pixels[i].x / full_scale);
+    picture.pixels[i] = glm::vec4(pipeline::linear_from_srgb(shown.x), pipeline::linear_from_srgb(shown.y),
+                                  pipeline::linear_from_srgb(shown.z), 1.0f);
+  }
+  return picture;
+}
+
+void write_point_files(const std::string& folder, const PointResult& point, const RunPlan& plan,
+                       const std::string& scene_name, const ReferenceImage* reference) {
+  std::filesystem::create_directories(folder);
+  write_file(folder + "/result.json", result_json(point, plan, scene_name).dump(2) + "\n");
+  write_file(folder + "/passes.csv", to_csv(wide_pass_table(point)));
+  write_file(folder + "/counters.csv", to_csv(counter_table(point)));
+  write_file(folder + "/trace.json", trace_event_json(point));
+  write_file(folder + "/run.toml", run_file_text(plan, *point.technique, "gpu.toml"));
+  write_file(folder + "/gpu.toml", show(*point.gpu, true));
+  if (plan.images) write_images(folder, point, reference);
+}
+
+std::string point_folder(const PointResult& point) {
+  std::string name = algos::technique_text(*point.technique) + "@" + point.gpu->id;
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 &&
+        std::string_view("@+-_.").find(c) == std::string_view::npos)
+      c = '_';
+  return name;
+}
+
+Json manifest(const ManifestInput& input) {
+  const BuildInfo build = build_info();
+  Json json;
+  json["schema_version"] = kResultSchemaVersion;
+  json["version"] = build.version;
+  json["model_version"] = kModelVersion;
+  json["commit"] = build.commit;
+  json["compiler"] = build.compiler;
+  json["build_type"] = build.build_type;
+  json["vector_targets"] = build.vector_targets;
+  json["host"] = host_text();
+  json["argv"] = input.arguments;
+  json["overrides"] = Json::object();
+  for (const Assignment& set : input.plan->overrides) json["overrides"][set.path] = set.value;
+  json["seed"] = 0;  // nothing is drawn at random outside the scene's own seed, which is part of its name
+  Json hashes;
+  if (input.scene) hashes["scene"] = input.scene->content_hash;
+  for (const GpuConfig& gpu : input.plan->gpus) hashes["gpu"][gpu.id] = content_hash(gpu);
+  json["input_hashes"] = hashes;
+  json["scene"] = input.plan->view.scene;
+  json["points"] = Json::array();
+  for (const algos::TechniqueChoice& technique : input.plan->techniques)
+    for (const GpuConfig& gpu : input.plan->gpus)
+      json["points"].push_back({{"technique", algos::technique_text(technique, true)}, {"gpu", gpu.id}});
+  json["notes"] = Json::array();
+  if (input.scene)
+    for (const Diagnostic& note : input.scene->notes) json["notes"].push_back(note.message);
+  json["wall_s"] = input.wall_s;
+  json["fragments_per_s"] = input.emulation_s > 0.0
+                                ? Json(static_cast<double>(input.fragments) / input.emulation_s)
+                                : Json(nullptr);
+  json["state"] = input.state;
+  return json;
+}
+
+}  // namespace hwsim::lab

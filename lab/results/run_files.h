@@ -1,0 +1,33 @@
+#pragma once
+// The files of a run directory (docs/results.md).
+#include <string>
+
+#include "lab/results/results.h"
+#include "lab/results/run_directory.h"
+
+namespace hwsim::lab {
+
+/// Everything that belongs to one point: result.json, tables, trace, images, and a run.toml with its
+/// gpu.toml.
+void write_point_files(const std::string& folder, const PointResult& point, const RunPlan& plan,
+                       const std::string& scene_name, const ReferenceImage* reference);
+
+struct ManifestInput {
+  std::vector<std::string> arguments;  ///< of the command line, where there is one
+  const RunPlan* plan = nullptr;
+  const SceneSummary* scene = nullptr;  ///< none: not loaded yet
+  double wall_s = 0.0;
+  std::uint64_t fragments = 0;  ///< shaded by emulations of this run
+  double emulation_s = 0.0;
+  std::string state;  ///< done, failed
+};
+nlohmann::ordered_json manifest(const ManifestInput& input);
+
+/// "msaa4x@gtx980": a point's folder in a run of several, without characters that file systems or shells
+/// mind.
+std::string point_folder(const PointResult& point);
+
+/// Magma on values divided by `full_scale`, as a picture to look at.
+pipeline::Image heat_picture(const pipeline::Image& values, float full_scale);
+
+}  // namespace hwsim::lab

@@ -1,0 +1,102 @@
+#include "lab/store/database.h"
+
+#include <sqlite3.h>
+
+#include "lab/base/messages.h"
+
+namespace hwsim::lab {
+namespace {
+
+constexpr int kBusyMs = 10'000;  // another process holds the lock for a point's transaction only
+
+sqlite3* open(const std::string& path, Database::Mode mode) {
+  sqlite3* handle = nullptr;
+  const int flags = SQLITE_OPEN_READWRITE | (mode == Database::Mode::create ? SQLITE_OPEN_CREATE : 0);
+  sqlite3_open_v2(path.c_str(), &handle, flags, nullptr);
+  return handle;  // with the error inside, if there was one
+}
+
+}  // namespace
+
+Database::Database(const std::string& path, Mode mode)
+    : path_(path), handle_(open(path, mode), sqlite3_close) {
+  require(sqlite3_errcode(handle_.get()));
+  require(sqlite3_busy_timeout(handle_.get(), kBusyMs));
+}
+
+void Database::fail() const {
+  hwsim::lab::fail("U021", "the database `" + path_ + "`: " + sqlite3_errmsg(handle_.get()), "",
+                   "a database that `hwsim sweep` wrote, in a folder that can be written");
+}
+
+void Database::require(int code) const {
+  if (code != SQLITE_OK && code != SQLITE_ROW && code != SQLITE_DONE) fail();
+}
+
+void Database::execute(const std::string& sql) {
+  require(sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr));
+}
+
+Database::Statement::Statement(Database& database, std::string_view sql)
+    : database_(database), handle_(nullptr, sqlite3_finalize) {
+  sqlite3_stmt* statement = nullptr;
+  const int code = sqlite3_prepare_v2(database.handle_.get(), sql.data(), static_cast<int>(sql.size()),
+                                      &statement, nullptr);
+  handle_.reset(statement);
+  database_.require(code);
+}
+
+Database::Statement& Database::Statement::bind(int place, std::string_view text) {
+  database_.require(
+      sqlite3_bind_text(handle_.get(), place, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT));
+  return *this;
+}
+Database::Statement& Database::Statement::bind(int place, double value) {
+  database_.require(sqlite3_bind_double(handle_.get(), place, value));
+  return *this;
+}
+Database::Statement& Database::Statement::bind(int place, std::int64_t value) {
+  database_.require(sqlite3_bind_int64(handle_.get(), place, value));
+  return *this;
+}
+Database::Statement& Database::Statement::bind_null(int place) {
+  database_.require(sqlite3_bind_null(handle_.get(), place));
+  return *this;
+}
+
+bool Database::Statement::step() {
+  const int code = sqlite3_step(handle_.get());
+  if (code != SQLITE_ROW && code != SQLITE_DONE) database_.fail();
+  return code == SQLITE_ROW;
+}
+
+void Database::Statement::run() {
+  step();
+  database_.require(sqlite3_reset(handle_.get()));
+}
+
+std::string Database::Statement::text(int column) const {
+  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(handle_.get(), column));
+  return text ? std::string(text, static_cast<size_t>(sqlite3_column_bytes(handle_.get(), column)))
+              : std::string();
+}
+std::int64_t Database::Statement::integer(int column) const {
+  return sqlite3_column_int64(handle_.get(), column);
+}
+std::optional<double> Database::Statement::real(int column) const {
+  if (sqlite3_column_type(handle_.get(), column) == SQLITE_NULL) return std::nullopt;
+  return sqlite3_column_double(handle_.get(), column);
+}
+
+Database::Transaction::Transaction(Database& database) : database_(database) {
+  database_.execute("BEGIN IMMEDIATE");
+}
+Database::Transaction::~Transaction() {
+  if (open_) sqlite3_exec(database_.handle_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
+}
+void Database::Transaction::commit() {
+  database_.execute("COMMIT");
+  open_ = false;
+}
+
+}  // namespace hwsim::lab

@@ -1,0 +1,211 @@
+#include "lab/store/scene_view.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <charconv>
+#include <ctime>
+#include <filesystem>
+#include <optional>
+
+#include "algos/source_digest.h"
+#include "hwsim/base/byte_codec.h"
+#include "lab/base/messages.h"
+#include "lab/request/image_input.h"
+#include "lab/store/cache.h"
+#include "pipeline/open/scene_source.h"
+
+namespace hwsim::lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kKind = "scene";
+constexpr std::uint64_t kVersion = 1;
+constexpr std::int64_t kNsPerS = 1'000'000'000;
+constexpr std::int64_t kSettledNs = kNsPerS / 10;  // far more than the tick of any file system's clock
+
+/// Whatever writes to a file, or puts another in its place, changes one of these.
+struct FileStamp {
+  std::string path;
+  std::int64_t bytes = -1;  ///< -1: there is no such file
+  std::int64_t changed_ns = 0, written_ns = 0, inode = 0;
+  bool operator==(const FileStamp&) const = default;
+};
+
+FileStamp stamp_of(const std::string& path) {
+  FileStamp stamp{path};
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return stamp;
+  stamp.bytes = status.st_size;
+  stamp.changed_ns = status.st_ctim.tv_sec * kNsPerS + status.st_ctim.tv_nsec;
+  stamp.written_ns = status.st_mtim.tv_sec * kNsPerS + status.st_mtim.tv_nsec;
+  stamp.inode = static_cast<std::int64_t>(status.st_ino);
+  return stamp;
+}
+
+std::int64_t now_ns() {
+  timespec now{};
+  ::clock_gettime(CLOCK_REALTIME, &now);
+  return now.tv_sec * kNsPerS + now.tv_nsec;
+}
+
+void write_note(ByteWriter& out, const Diagnostic& note) {
+  out.count(static_cast<std::uint64_t>(note.severity));
+  for (const std::string* text :
+       {&note.code, &note.message, &note.place.file, &note.place.line_text, &note.hint, &note.help})
+    out.text(*text);
+  for (const int number : {note.place.line, note.place.column, note.place.length}) out.integer(number);
+  out.count(note.notes.size());
+  for (const std::string& text : note.notes) out.text(text);
+}
+
+Diagnostic read_note(ByteReader& in) {
+  Diagnostic note;
+  const std::uint64_t severity = in.count();
+  if (severity > static_cast<std::uint64_t>(Severity::error)) throw DamagedBytes("an unknown severity");
+  note.severity = static_cast<Severity>(severity);
+  for (std::string* text :
+       {&note.code, &note.message, &note.place.file, &note.place.line_text, &note.hint, &note.help})
+    *text = in.text();
+  for (int* number : {&note.place.line, &note.place.column, &note.place.length})
+    *number = static_cast<int>(in.integer());
+  note.notes.resize(in.elements());
+  for (std::string& text : note.notes) text = in.text();
+  return note;
+}
+
+std::vector<std::uint8_t> encode(const SceneSummary& summary, const std::vector<FileStamp>& stamps) {
+  ByteWriter out;
+  out.count(stamps.size());
+  for (const FileStamp& stamp : stamps) {
+    out.text(stamp.path);
+    for (const std::int64_t number : {stamp.bytes, stamp.changed_ns, stamp.written_ns, stamp.inode})
+      out.integer(number);
+  }
+  out.text(summary.name);
+  out.text(summary.content_hash);
+  out.count(summary.cameras.size());
+  for (const std::string& camera : summary.cameras) out.text(camera);
+  out.count(summary.notes.size());
+  for (const Diagnostic& note : summary.notes) write_note(out, note);
+  return seal(kKind, kVersion, out.take());
+}
+
+/// Nothing when a file has changed since.
+std::optional<SceneSummary> decode(std::span<const std::uint8_t> bytes) {
+  ByteReader in(open_seal(kKind, kVersion, bytes));
+  for (std::size_t files = in.elements(); files > 0; --files) {
+    FileStamp stamp{in.text()};
+    for (std::int64_t* number : {&stamp.bytes, &stamp.changed_ns, &stamp.written_ns, &stamp.inode})
+      *number = in.integer();
+    if (stamp != stamp_of(stamp.path)) return std::nullopt;
+  }
+  SceneSummary summary;
+  summary.name = in.text();
+  summary.content_hash = in.text();
+  summary.cameras.resize(in.elements());
+  for (std::string& camera : summary.cameras) camera = in.text();
+  summary.notes.resize(in.elements());
+  for (Diagnostic& note : summary.notes) note = read_note(in);
+  in.expect_end();
+  return summary;
+}
+
+/// A generated scene's file follows from its name and the generator's sources; a file is itself.
+std::string summary_path(const std::string& scene) {
+  const bool is_file = scene.ends_with(".gltf") || scene.ends_with(".glb");
+  std::error_code error;
+  const std::string name = is_file ? fs::absolute(scene, error).lexically_normal().string() : scene;
+  return cache_path(CacheFolder::scenes, fmt::format("{}|{}|{}", algos::source_digest(), name, scene),
+                    ".summary");
+}
+
+int find_camera(const SceneSummary& scene, const std::string& text) {
+  const auto count = static_cast<int>(scene.cameras.size());
+  int index = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  for (int i = 0; i < count; ++i)
+    if (scene.cameras[static_cast<size_t>(i)] == text) return i;
+  if (error == std::errc() && end == text.data() + text.size() && index >= 0 && index < count) return index;
+  fail("U009", fmt::format("scene `{}` has no camera `{}`", scene.name, text),
+       did_you_mean(text, scene.cameras),
+       fmt::format("cameras: index 0 to {}; names: {}", count - 1, fmt::join(scene.cameras, ", ")));
+}
+
+std::optional<SceneSummary> remembered_summary(const std::string& path, Observer& observer) {
+  const auto bytes = read_cached(path);
+  if (!bytes) return std::nullopt;
+  try {
+    return decode(*bytes);
+  } catch (const DamagedBytes& damage) {
+    note_damage(observer, path, damage.what());
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+SceneView::SceneView(View plan, Observer& observer) : plan_(std::move(plan)) {
+  if (is_image_file(plan_.scene)) {
+    load_image();
+    return;
+  }
+  const std::string path = summary_path(plan_.scene);
+  if (auto known = remembered_summary(path, observer)) {
+    summary_ = std::move(*known);
+  } else {
+    const std::int64_t start_ns = now_ns();
+    load();
+    std::vector<FileStamp> stamps;
+    bool settled = true;  // a file written while it was read could differ from what its stamp says
+    for (const std::string& file : scene_->files) {
+      stamps.push_back(stamp_of(file));
+      settled = settled && stamps.back().changed_ns < start_ns - kSettledNs;
+    }
+    if (settled) write_cached(path, encode(summary_, stamps), observer);
+  }
+  camera_ = find_camera(summary_, plan_.camera);
+  for (const Diagnostic& note : summary_.notes) observer.report(note);
+}
+
+void SceneView::load() {
+  auto scene = std::make_shared<const pipeline::Scene>(
+      pipeline::open_scene(plan_.scene, cache_directory(CacheFolder::scenes)));
+  summary_ = {scene->name, scene->content_hash, {}, scene->notes};
+  for (const pipeline::Camera& camera : scene->cameras) summary_.cameras.push_back(camera.name);
+  scene_ = std::move(scene);
+}
+
+void SceneView::load_image() {
+  const ImageInput input = read_image_input(plan_.scene);
+  auto scene = std::make_shared<pipeline::Scene>();
+  scene->name = fs::path(plan_.scene).stem().string();
+  scene->content_hash = input.content_hash;
+  summary_ = {scene->name, scene->content_hash, {}, {}};
+  image_ = input.texels;
+  plan_.resolution = {image_->width, image_->height};
+  scene_ = std::move(scene);
+}
+
+const std::shared_ptr<const pipeline::Scene>& SceneView::scene() {
+  if (!scene_) load();
+  return scene_;
+}
+
+algos::FrameRequest SceneView::frame_request() {
+  algos::FrameRequest request;
+  request.scene = scene();
+  request.width_px = plan_.resolution.width_px;
+  request.height_px = plan_.resolution.height_px;
+  request.camera = camera_;
+  request.point_lights = plan_.point_lights;
+  request.light_range = plan_.light_range;
+  request.lights = light_profile_from_name(plan_.lights).value_or(algos::LightProfile::scene);
+  request.shadows = plan_.shadows;
+  request.shadow_map_px = plan_.shadow_map_px;
+  request.image = image_;
+  return request;
+}
+
+}  // namespace hwsim::lab

@@ -1,0 +1,49 @@
+#pragma once
+// A scene as a plan looks at it. What the answers need of it (name, content hash, cameras, the loader's
+// notes) is remembered on disk beside the stamps of its files, so that a run whose traces are cached never
+// loads it. An image that stands for a scene has neither geometry nor cameras, and sets the resolution.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "algos/techniques.h"
+#include "lab/base/observer.h"
+#include "lab/request/plan.h"
+#include "pipeline/image/image_io.h"
+
+namespace hwsim::lab {
+
+struct SceneSummary {
+  std::string name;
+  std::string content_hash;
+  std::vector<std::string> cameras;
+  std::vector<Diagnostic> notes;
+};
+
+class SceneView {
+ public:
+  /// Finds the camera by name or index. Throws InputError.
+  SceneView(View plan, Observer& observer);
+
+  const View& plan() const { return plan_; }
+  const SceneSummary& summary() const { return summary_; }
+  int camera() const { return camera_; }
+
+  /// Loaded at the first call.
+  const std::shared_ptr<const pipeline::Scene>& scene();
+
+  /// The frame without a GPU: features and limits are still to be set.
+  algos::FrameRequest frame_request();
+
+ private:
+  void load();
+  void load_image();
+
+  View plan_;
+  SceneSummary summary_;
+  int camera_ = 0;
+  std::shared_ptr<const pipeline::Scene> scene_;
+  std::shared_ptr<const pipeline::RawImage> image_;  ///< stands for the scene, which is empty then
+};
+
+}  // namespace hwsim::lab

@@ -1,0 +1,61 @@
+#pragma once
+// Work traces by what they depend on: in memory, on disk, or emulated now. Everything that times frames asks
+// here, so that varying a GPU's numbers never draws again.
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lab/store/scene_view.h"
+#include "pipeline/emulate/emulator.h"
+
+namespace hwsim::lab {
+
+using ProgressFunction = std::function<void(double done_ratio, const std::string& what)>;
+
+struct FrameNeeds {
+  pipeline::SkipSwitches skip;
+  bool image = false;  ///< the image and the heat map too; without, Emulation::color may be empty
+};
+
+struct EmulatedFrame {
+  std::shared_ptr<const pipeline::Emulation> emulation;  ///< wall_s: what getting it took this time
+  bool from_cache = false;  ///< whether it was kept by this process or on the disk
+};
+
+class TraceStore {
+ public:
+  struct Options {
+    int jobs = 1;
+    bool disk = true;  ///< false: neither reads nor writes cached traces
+  };
+  TraceStore(const Options& options, Observer& observer) : options_(options), observer_(observer) {}
+
+  /// Only features and limits of `gpu` matter. Throws InputError where the technique cannot run on it.
+  EmulatedFrame frame(SceneView& scene, const algos::TechniqueChoice& technique, const GpuConfig& gpu,
+                      const FrameNeeds& needs, const ProgressFunction& progress);
+
+  /// All that the work of a frame depends on, but the program itself, as text.
+  static std::string work_text(const SceneView& scene, const algos::TechniqueChoice& technique,
+                               const GpuConfig& gpu, const FrameNeeds& needs);
+
+ private:
+  struct Kept {
+    std::string key;
+    std::shared_ptr<const pipeline::Emulation> emulation;
+  };
+  std::shared_ptr<const pipeline::Emulation> in_memory(const std::string& key, bool image) const;
+  std::shared_ptr<const pipeline::Emulation> on_disk(const std::string& key, const SceneView& scene,
+                                                     bool image);
+  std::shared_ptr<const pipeline::Emulation> emulate(SceneView& scene,
+                                                     const algos::TechniqueChoice& technique,
+                                                     const GpuConfig& gpu, const FrameNeeds& needs,
+                                                     const ProgressFunction& progress);
+  void keep(const std::string& key, std::shared_ptr<const pipeline::Emulation> emulation);
+
+  Options options_;
+  Observer& observer_;
+  std::vector<Kept> kept_;  ///< the newest last
+};
+
+}  // namespace hwsim::lab

@@ -1,0 +1,173 @@
+#include "lab/studies/axes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "lab/base/messages.h"
+#include "lab/base/table.h"
+#include "lab/base/text.h"
+
+namespace hwsim::lab {
+namespace {
+
+constexpr int kMaxPoints = 1'000'000;
+
+[[noreturn]] void fail_axis(const std::string& text, const std::string& why) {
+  fail_usage("U019", "--vary " + text + ": " + why, "",
+             "path=a,b,c or path=lo..hi:n or path=lo..hi:n:log, e.g. gpu.l2_size_kib=256..4096:5:log");
+}
+
+template <class T>
+bool read_number(std::string_view text, T& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+/// 512.0000000001, the product of a logarithmic step, is meant as 512, which a key of whole numbers takes.
+std::string number_text(double value) {
+  const double whole = std::round(value);
+  constexpr double kSlip = 1e-9;
+  if (std::abs(value - whole) <= kSlip * std::abs(value) && std::abs(whole) < 1e15)
+    return fmt::format("{:.0f}", whole);
+  return exact(value);
+}
+
+double at_share(const Axis::Range& range, double share) {
+  if (range.logarithmic) return range.low * std::pow(range.high / range.low, share);
+  return range.low + (range.high - range.low) * share;
+}
+
+/// Nothing when it is not of the form lo..hi.
+std::optional<Axis::Range> parse_range(const std::string& text, const std::string& bounds) {
+  const auto dots = bounds.find("..");
+  if (dots == std::string::npos) return std::nullopt;
+  Axis::Range range;
+  if (!read_number(std::string_view(bounds).substr(0, dots), range.low) ||
+      !read_number(std::string_view(bounds).substr(dots + 2), range.high))
+    fail_axis(text, "`" + bounds + "` is no range of two numbers");
+  if (!std::isfinite(range.low) || !std::isfinite(range.high) || !(range.low < range.high))
+    fail_axis(text, "the range must go from a smaller to a larger number");
+  return range;
+}
+
+void fill_range(Axis& axis, const std::string& text, const std::vector<std::string>& parts) {
+  if (parts.size() == 3 && parts[2] != "log") fail_axis(text, "after the count only `log` may stand");
+  if (parts.size() > 3) fail_axis(text, "it has too many parts");
+  axis.range->logarithmic = parts.size() == 3;
+  if (axis.range->logarithmic && axis.range->low <= 0.0)
+    fail_axis(text, "a logarithmic range must be positive");
+  if (parts.size() == 1) return;
+  int count = 0;
+  if (!read_number(std::string_view(parts[1]), count) || count < 2 || count > kMaxPoints)
+    fail_axis(text, fmt::format("the count must be a whole number from 2 to {}", kMaxPoints));
+  for (int i = 0; i < count; ++i)
+    axis.values.push_back(number_text(at_share(*axis.range, static_cast<double>(i) / (count - 1))));
+}
+
+/// SplitMix64 (Steele, Lea, Flood 2014): the distributions of <random> differ between libraries.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t next() {
+    std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+  }
+  double real() { return static_cast<double>(next() >> 11) * 0x1p-53; }
+  std::vector<int> permutation(int n) {
+    std::vector<int> order(static_cast<size_t>(n));
+    std::iota(order.begin(), order.end(), 0);
+    for (size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[next() % i]);
+    return order;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+}  // namespace
+
+Axis parse_axis(const std::string& text) {
+  const Assignment assignment = parse_assignment(text);
+  Axis axis{assignment.path, {}, {}};
+  const std::vector<std::string> parts = split(assignment.value, ':');
+  if ((axis.range = parse_range(text, parts.front())))
+    fill_range(axis, text, parts);
+  else
+    axis.values = split(assignment.value, ',');
+  for (const std::string& value : axis.values)
+    if (value.empty()) fail_axis(text, "a value is empty");
+  return axis;
+}
+
+std::vector<Axis> parse_axes(const std::vector<std::string>& texts) {
+  std::vector<Axis> axes;
+  std::set<std::string> paths;
+  for (const std::string& text : texts) {
+    axes.push_back(parse_axis(text));
+    if (!paths.insert(axes.back().path).second) fail_axis(text, "`" + axes.back().path + "` is varied twice");
+  }
+  return axes;
+}
+
+int parse_sample(const std::string& text) {
+  int points = 0;
+  if (text.rfind("lhs:", 0) == 0 && read_number(std::string_view(text).substr(4), points) && points >= 1 &&
+      points <= kMaxPoints)
+    return points;
+  fail_usage("U019", "--sample is `" + text + "`, must be lhs:POINTS", "--sample lhs:64");
+}
+
+std::vector<std::vector<Assignment>> combine(const std::vector<Axis>& axes, Combine how) {
+  size_t count = 1;
+  for (const Axis& axis : axes) {
+    if (axis.values.empty())
+      fail_usage("U019", "the range of `" + axis.path + "` has no count", "lo..hi:n, or --sample lhs:N");
+    count = how == Combine::grid ? count * axis.values.size() : axis.values.size();
+    if (count > kMaxPoints) fail_usage("U019", fmt::format("the axes span more than {} points", kMaxPoints));
+  }
+  if (how == Combine::zip)
+    for (const Axis& axis : axes)
+      if (axis.values.size() != axes.front().values.size())
+        fail_usage("U019",
+                   fmt::format("--zip takes lists of one length: `{}` has {} values, `{}` {}",
+                               axes.front().path, axes.front().values.size(), axis.path, axis.values.size()));
+  std::vector<std::vector<Assignment>> points(count);
+  for (size_t i = 0; i < count; ++i) {
+    size_t rest = i, stride = count;
+    for (const Axis& axis : axes) {
+      stride /= how == Combine::grid ? axis.values.size() : 1;
+      const size_t index = how == Combine::zip ? i : rest / stride;
+      if (how == Combine::grid) rest %= stride;
+      points[i].push_back({axis.path, axis.values[index]});
+    }
+  }
+  return points;
+}
+
+std::vector<std::vector<Assignment>> latin_hypercube(const std::vector<Axis>& axes, int points,
+                                                     std::uint64_t seed) {
+  Random random(seed);
+  std::vector<std::vector<Assignment>> result(static_cast<size_t>(points));
+  for (const Axis& axis : axes) {
+    const std::vector<int> strata = random.permutation(points);
+    for (size_t i = 0; i < result.size(); ++i) {
+      const double share = (strata[i] + random.real()) / points;
+      const size_t count = axis.values.size();
+      result[i].push_back(
+          {axis.path,
+           axis.range
+               ? exact(at_share(*axis.range, share))
+               : axis.values[std::min(count - 1, static_cast<size_t>(share * static_cast<double>(count)))]});
+    }
+  }
+  return result;
+}
+
+}  // namespace hwsim::lab

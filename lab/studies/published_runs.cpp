@@ -1,0 +1,137 @@
+#include "lab/studies/published_runs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "lab/base/files.h"
+#include "lab/base/messages.h"
+#include "lab/point/simulate.h"
+
+namespace hwsim::lab {
+namespace {
+
+namespace fs = std::filesystem;
+using cost_models::Experiment;
+using cost_models::RowUse;
+using cost_models::RunSpec;
+
+std::string published_directory() { return (fs::path(config_directory()) / "published").string(); }
+
+/// Traces of runs, as `run` would make them: from the cache where it has them.
+class RunTraces {
+ public:
+  RunTraces(int jobs, Observer& observer) : store_({.jobs = jobs, .disk = true}, observer) {}
+
+  std::shared_ptr<const WorkTrace> trace(const RunSpec& spec, const GpuConfig& gpu) {
+    View view;
+    view.scene = spec.scene;
+    view.camera = spec.camera;
+    view.resolution = {spec.width_px, spec.height_px};
+    view.point_lights = spec.point_lights;
+    view.light_range = spec.light_range;
+    view.shadows = spec.shadows;
+    view.lights = spec.lights;
+    const algos::TechniqueChoice technique = algos::parse_technique(spec.technique);
+    if (!scene_ || !(scene_->plan() == view)) scene_ = std::make_unique<SceneView>(view, silent_);
+    std::shared_ptr<const WorkTrace>& known =
+        traces_[TraceStore::work_text(*scene_, technique, gpu, FrameNeeds{})];
+    if (!known)  // a copy: without the image that a fresh emulation carries
+      known = std::make_shared<const WorkTrace>(
+          store_.frame(*scene_, technique, gpu, FrameNeeds{}, nullptr).emulation->trace);
+    return known;
+  }
+
+ private:
+  TraceStore store_;
+  Observer silent_;  // the loader's notes on stand-in scenes
+  std::unique_ptr<SceneView> scene_;
+  std::map<std::string, std::shared_ptr<const WorkTrace>> traces_;
+};
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text == "wireaa" ? "wire_aa" : text;
+}
+
+/// Why a run is impossible whatever the scene; empty when nothing is known against it.
+std::string technique_problem(const RunSpec& run) {
+  try {
+    algos::parse_technique(run.technique);
+    return {};
+  } catch (const InputError& error) {
+    return cost_models::reason_of(error);
+  }
+}
+
+}  // namespace
+
+bool in_papers(const cost_models::Cell& cell, const std::vector<std::string>& papers) {
+  return papers.empty() || std::find(papers.begin(), papers.end(), lower(cell.row.document)) != papers.end();
+}
+
+void check_papers(const std::vector<std::string>& papers) {
+  const std::vector<std::string> known = {"sss", "sbaa", "axaa", "agaa", "wire_aa"};
+  for (const std::string& paper : papers)
+    if (std::find(known.begin(), known.end(), paper) == known.end())
+      fail_usage("U003", "no paper is called `" + paper + "`, only sss, sbaa, axaa, agaa and wire_aa",
+                 did_you_mean(paper, known));
+}
+
+std::vector<cost_models::Cell> published_cells(const std::vector<std::string>& papers) {
+  check_papers(papers);
+  std::vector<cost_models::Cell> cells =
+      cost_models::map_rows(cost_models::load_published(published_directory()), published_directory());
+  std::erase_if(cells, [&](const cost_models::Cell& cell) { return !in_papers(cell, papers); });
+  return cells;
+}
+
+Experiment load_experiment(std::vector<cost_models::Cell> cells, int jobs, Observer& observer) {
+  std::map<std::string, GpuConfig> gpus;
+  for (const cost_models::Cell& cell : published_cells({}))  // parameters name GPUs of every paper
+    if (cell.has_run && !gpus.contains(cell.run.gpu))
+      gpus.emplace(cell.run.gpu, load_gpu(cell.run.gpu, {}, {}, gpu_directory()));
+  RunTraces traces(jobs, observer);
+  Experiment experiment = cost_models::make_experiment(
+      std::move(cells), gpus, (fs::path(config_directory()) / "calibration" / "parameters.csv").string(),
+      [&](const RunSpec& spec, const GpuConfig& gpu) { return traces.trace(spec, gpu); },
+      [&](std::size_t done, std::size_t all, const std::string& what) {
+        observer.progress(all == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(all), what);
+      });
+  observer.progress_ended();
+  return experiment;
+}
+
+Table plan_table(const std::vector<cost_models::Cell>& cells) {
+  Table table{{{"row", "row"},
+               {"use", "use"},
+               {"published", "published", true},
+               {"unit", "unit"},
+               {"run", "run", false, 60},
+               {"passes", "passes"},
+               {"reason", "reason", false, 40}},
+              {}};
+  for (const cost_models::Cell& cell : cells) {
+    if (cell.use == RowUse::claim) continue;
+    const std::string missing = cell.has_run ? technique_problem(cell.run) : std::string();
+    table.rows.push_back({cell.row.id(), std::string(row_use_name(cell.use)), Real{cell.published, 3},
+                          cell.unit, cell.has_run ? cell.run.to_string() : std::string(), cell.passes,
+                          missing.empty() ? cell.reason : "not run: " + missing});
+  }
+  return table;
+}
+
+Table not_run_table(const Experiment& experiment) {
+  std::map<std::string, std::uint64_t> rows;
+  for (const cost_models::NotRun& n : experiment.not_run)
+    if (const RowUse use = experiment.cells[n.cell].use; use == RowUse::fitted || use == RowUse::count)
+      ++rows[n.reason];
+  Table table{{{"rows", "rows", true}, {"not_run_because", "not run because"}}, {}};
+  for (const auto& [reason, count] : rows) table.rows.push_back({count, reason});
+  return table;
+}
+
+}  // namespace hwsim::lab

@@ -1,0 +1,30 @@
+#pragma once
+// The published tables beside the runs that stand for them: what fit, validate and reproduce start from.
+#include <string>
+#include <vector>
+
+#include "cost_models/experiment.h"
+#include "lab/base/observer.h"
+#include "lab/base/table.h"
+
+namespace hwsim::lab {
+
+/// "sss" from `SSS`; every row without a filter.
+bool in_papers(const cost_models::Cell& cell, const std::vector<std::string>& papers);
+
+/// Names of papers that have rows; throws InputError U003 for others.
+void check_papers(const std::vector<std::string>& papers);
+
+/// Rows of the papers (all when empty) with what is done with them, from configs/published.
+std::vector<cost_models::Cell> published_cells(const std::vector<std::string>& papers);
+
+/// Emulates what the cache does not have. Rows that cannot run are in `not_run`.
+cost_models::Experiment load_experiment(std::vector<cost_models::Cell> cells, int jobs, Observer& observer);
+
+/// Rows and their runs, without running anything.
+Table plan_table(const std::vector<cost_models::Cell>& cells);
+
+/// Rows that have no prediction, by reason.
+Table not_run_table(const cost_models::Experiment& experiment);
+
+}  // namespace hwsim::lab
