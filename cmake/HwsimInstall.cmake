@@ -15,9 +15,17 @@ install(TARGETS hwsim_hwsim hwsim_pipeline hwsim_algos hwsim_cost_models hwsim_l
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS hwsim_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS hwsim_image_io LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/hwsim ${PROJECT_SOURCE_DIR}/pipeline ${PROJECT_SOURCE_DIR}/algos
-        ${PROJECT_SOURCE_DIR}/cost_models ${PROJECT_SOURCE_DIR}/lab
-        DESTINATION ${hwsim_include_dir} FILES_MATCHING PATTERN "*.h")
+# A line is a header, or a folder with a slash behind it.
+file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/public_headers.txt public_headers REGEX "^[a-z]")
+foreach(header IN LISTS public_headers)
+  if(header MATCHES "/$")
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${hwsim_include_dir}/${header}
+            FILES_MATCHING PATTERN "*.h" PATTERN "*-inl.h" EXCLUDE)
+  else()
+    get_filename_component(folder ${header} DIRECTORY)
+    install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${hwsim_include_dir}/${folder})
+  endif()
+endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/configs DESTINATION ${CMAKE_INSTALL_DATADIR}/hwsim)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CHANGELOG.md
         DESTINATION ${CMAKE_INSTALL_DOCDIR})
