@@ -1,5 +1,5 @@
 #pragma once
-// The aggregate G-buffer's render targets and their bytes (techniques 4.11).
+// The aggregate G-buffer's render targets and their bytes (docs/techniques/agaa.md#memory).
 #include <string>
 #include <vector>
 
@@ -16,7 +16,7 @@ struct LayoutChoice {
   MaskStore mask = MaskStore::natural;
   int samples = 8;         ///< that a record's mask names
   bool geometric = false;  ///< mean of unit normals and mean gloss
-  bool moments = false;    ///< of view depth
+  bool moments = false;    ///< whether moments of view depth are stored
   bool floats = false;     ///< half floats in place of normalized integers
 };
 
@@ -27,7 +27,7 @@ struct AggregateLayout {
   };
   std::vector<Target> targets;
   AggregateTargets index;
-  int bytes() const;  ///< of an aggregate
+  int bytes() const;  ///< size of an aggregate
 };
 
 AggregateLayout make_layout(const LayoutChoice& choice);

@@ -33,7 +33,8 @@ PixelRays center_rays(const pipeline::Camera& camera, const glm::mat4& view_from
   return rays;
 }
 
-// Quantiles of a normal distribution at the middles of equal shares; three taps as techniques 4.8 has them.
+// Quantiles of a normal distribution at the middles of equal shares; three taps as
+// docs/techniques/agaa.md#shading has them.
 void set_shadow_taps(ShadeUniforms& u, int taps) {
   static constexpr float kQuantiles[kMaxShadowTaps][kMaxShadowTaps] = {
       {0.0f},

@@ -5,7 +5,7 @@
 
 namespace hwsim::algos {
 
-/// Of the pixels of a frame of this size.
+/// The rays of the pixels of a frame of this size.
 PixelRays center_rays(const pipeline::Camera& camera, const glm::mat4& view_from_clip, int width, int height);
 
 /// Places and weights of `taps` along an aggregate's main axis, in standard deviations.

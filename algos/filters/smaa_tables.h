@@ -1,5 +1,6 @@
 #pragma once
-// SMAA's tables, generated (techniques 7.3): areas under re-vectorized edges, and lengths of searches.
+// SMAA's tables, generated (docs/techniques/filters.md#smaa): areas under re-vectorized edges, and lengths of
+// searches.
 #include <glm/glm.hpp>
 #include <memory>
 
@@ -12,7 +13,7 @@ namespace hwsim::algos {
 /// (both).
 glm::dvec2 straight_area(int before, int after, int code_start, int code_end);
 
-/// Of a diagonal of 45 degrees; codes 0 to 3.
+/// The areas of a diagonal of 45 degrees; codes 0 to 3.
 glm::dvec2 diagonal_area(int before, int after, int code_start, int code_end);
 
 /// 160x560 RG8: 16x16 texels by square roots of the distances for each pair of codes, from x = 80 on 20x20

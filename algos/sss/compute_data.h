@@ -13,7 +13,7 @@ struct SssComputeData {
   int group_count() const { return static_cast<int>(groups.size()) / kSssGroupWords; }
 };
 
-/// Of critical triangles; `uniforms` get the draws and the length of a vertex.
+/// The buffers of critical triangles; `uniforms` get the draws and the length of a vertex.
 SssComputeData sss_compute_data(const pipeline::Scene& scene, const std::vector<CriticalDraw>& critical,
                                 SssUniforms& uniforms);
 

@@ -1,4 +1,5 @@
-// CMAA against a scalar reading of its description (techniques 7.4): pixel by pixel over whole pictures.
+// CMAA against a scalar reading of its description (docs/techniques/filters.md#cmaa): pixel by pixel over
+// whole pictures.
 #include <gtest/gtest.h>
 
 #include "algos/picture.h"

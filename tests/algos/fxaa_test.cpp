@@ -8,7 +8,7 @@
 namespace hwsim::test {
 namespace {
 
-/// Techniques 7.1, one pixel at a time, in the order in which the text has it.
+/// docs/techniques/filters.md#fxaa, one pixel at a time, in the order in which the text has it.
 class ScalarFxaa {
  public:
   ScalarFxaa(const Picture& p, std::vector<float> steps) : p_(p), steps_(std::move(steps)) {

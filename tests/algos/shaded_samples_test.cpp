@@ -31,7 +31,8 @@ struct Row {
 
 TEST(ShadedSamples, GeneratedScenesHoldThePublishedCounts) {
   // At 4x the same views give +0.6, +1.3 and +0.7 % for SPONZA, POWERPLANT and DRAGON; GRASS prints 2.9 %
-  // complex pixels at 4x against 16.5 % at 8x, which cannot be the same view (techniques 11).
+  // complex pixels at 4x against 16.5 % at 8x, which cannot be the same view
+  // (docs/published_tables.md#contradiction-16).
   const Row rows[] = {
       {"sponza_hall", 1265839}, {"grass", 1987385}, {"powerplant", 1447662}, {"dragon", 999965}};
   for (const Row& row : rows) {

@@ -13,7 +13,8 @@ struct Weights {
   float r = 0, g = 0, b = 0, a = 0;
 };
 
-/// Techniques 7.3: edges as booleans, searches as walks, areas by formula through the table's texels.
+/// docs/techniques/filters.md#smaa: edges as booleans, searches as walks, areas by formula through the
+/// table's texels.
 class ScalarSmaa {
  public:
   ScalarSmaa(const Picture& p, float threshold, int steps, int diagonal_steps, float corner)

@@ -1,4 +1,5 @@
-// Wire anti-aliasing (techniques 6): no gaps, the energy of the true width, wide wires as they were.
+// Wire anti-aliasing (docs/techniques/wire.md): no gaps, the energy of the true width, wide wires as they
+// were.
 #include <gtest/gtest.h>
 
 #include <cmath>

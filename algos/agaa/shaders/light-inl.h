@@ -1,5 +1,5 @@
-// The light that one aggregate of a pixel reflects (techniques 4.8). Per-target include guard, see
-// simd/lanes-inl.h.
+// The light that one aggregate of a pixel reflects (docs/techniques/agaa.md#shading). Per-target include
+// guard, see simd/lanes-inl.h.
 #include <hwy/highway.h>
 #include "algos/agaa/shaders/lobes-inl.h"
 #include "algos/agaa/shaders/programs.h"
@@ -59,8 +59,8 @@ class AggregateLight {
   }
 
  private:
-  // Mean and main axis of the samples' positions: along the pixel's ray, from the depths alone (section
-  // 3.5.3: what the paper does in practice), or of their covariance.
+  // Mean and main axis of the samples' positions: along the pixel's ray, from the depths alone (the
+  // paper's section 3.5.3: what it does in practice), or of their covariance.
   void find_place(const AggregateRecord<F, I>& r) {
     if (u_.aggregate.targets.moments >= 0) {
       place_along_ray(r.depth, r.depth2 - r.depth * r.depth);
@@ -181,7 +181,7 @@ class AggregateLight {
       const F length = min(sqrt(dot(r.normal, r.normal)), F(1.0f - 1.0f / 65535.0f));
       if (u_.diffuse == DiffuseFilter::geometric) diffuse_length_ = length;
       if (!u_.separate_gloss || u_.aggregate.ndf != Ndf::toksvig) return;
-      // Toksvig's factor on the mean gloss: steps 1 to 4 of section 3.5.2.
+      // Toksvig's factor on the mean gloss: steps 1 to 4 of the paper's section 3.5.2.
       const F s = exponent_of(min(r.gloss, F(1.0f - 1.0f / 65535.0f)), u_.aggregate.gloss_reference);
       const F factor = length / max(length + s * (F(1.0f) - length), F(1e-6f));
       surface_.normal = normalize(r.normal);

@@ -1,5 +1,6 @@
-// Lobes of normals that an aggregate holds, and what they reflect (techniques 4.8): Toksvig (2005), LEAN
-// (Olano and Baker 2010), SGGX (Heitz et al. 2015). Per-target include guard, see simd/lanes-inl.h.
+// Lobes of normals that an aggregate holds, and what they reflect (docs/techniques/agaa.md#shading): Toksvig
+// (2005), LEAN (Olano and Baker 2010), SGGX (Heitz et al. 2015). Per-target include guard, see
+// simd/lanes-inl.h.
 #include <hwy/highway.h>
 #include "algos/agaa/shaders/record-inl.h"
 #include "pipeline/shade/lighting-inl.h"
@@ -76,7 +77,8 @@ F across_variance(const SymmetricMatrix<F>& m, const Vec3<F>& l) {
   return max(m.xx + m.yy + m.zz - dot(l, multiply(m, l)), F(0.0f));
 }
 
-/// The exponent that a Toksvig vector of this length holds; `reference` as in techniques 4.8, 0: infinite.
+/// The exponent that a Toksvig vector of this length holds; `reference` as in
+/// docs/techniques/agaa.md#shading, 0: infinite.
 template <class F>
 F exponent_of(F length, float reference) {
   if (reference <= 0.0f) return length / (F(1.0f) - length);
@@ -84,8 +86,8 @@ F exponent_of(F length, float reference) {
 }
 
 /// A von Mises-Fisher lobe of normals with mean length `r`, as its diffuse light needs it: what no light
-/// changes. A series below kappa 2.5 (error 0.002), the fit of spherical Gaussians above (0.016); techniques
-/// 4.8.
+/// changes. A series below kappa 2.5 (error 0.002), the fit of spherical Gaussians above (0.016);
+/// docs/techniques/agaa.md#shading.
 template <class F>
 struct DiffuseLobe {
   F constant, linear, square;  ///< the series, in the cosine

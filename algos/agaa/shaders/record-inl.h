@@ -85,7 +85,7 @@ struct AggregateRecord {
   Vec3<F> normal;  ///< geometric target
   F gloss;
   F depth, depth2;
-  I mask;   ///< of samples, where masks are kept
+  I mask;   ///< which samples it covers, where masks are kept
   F count;  ///< samples
 };
 

@@ -73,7 +73,7 @@ struct CopySamplesShader {
   }
 };
 
-// Of each encoding, in the order of GBufferEncoding.
+// One entry for each encoding, in the order of GBufferEncoding.
 using E = GBufferEncoding;
 template <class Shader>
 void run(pipeline::FragmentBatch& b, const void* u) {

@@ -1,5 +1,5 @@
 #pragma once
-// G-buffer and deferred lighting (techniques 2).
+// G-buffer and deferred lighting (docs/techniques/deferred.md).
 #include <array>
 
 #include "algos/base/shaders/gbuffer_layouts.h"
@@ -34,7 +34,8 @@ struct DeferredUniforms {
   bool compare_all = false;
 };
 
-/// Discards pixels whose samples are alike by Lauritzen's criteria (techniques 2.3).
+/// Discards pixels whose samples are alike by Lauritzen's criteria
+/// (docs/techniques/deferred.md#simple-and-complex).
 const pipeline::FragmentProgram& classify_program(GBufferEncoding encoding);
 /// Lights sample 0 at pixel rate, or the invocation's sample at sample rate.
 const pipeline::FragmentProgram& deferred_light_program(GBufferEncoding encoding);

@@ -15,7 +15,8 @@ constexpr GBufferAttachment kCompact[] = {{"gbuffer_normal", Format::rg16_snorm}
                                           {"gbuffer_albedo", Format::rgba8_srgb},
                                           {"gbuffer_specular", Format::rgba8_srgb}};
 
-// 40 bytes as 32 + 4 + 4: the split of techniques 3.6 (a). 16 bytes with depth: techniques 4.11.
+// 40 bytes as 32 + 4 + 4: docs/techniques/deferred.md#g-buffers. 16 bytes with depth:
+// docs/techniques/agaa.md#memory.
 constexpr GBufferLayout kLayouts[] = {
     {"gb_lauritzen", "16 bytes and depth with stencil a sample, lit color in half floats",
      GBufferEncoding::gradients, kLauritzen, Format::d32_float, Format::d32_float_s8, Format::rgba16_float},

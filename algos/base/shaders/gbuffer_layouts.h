@@ -1,5 +1,6 @@
 #pragma once
-// G-buffer layouts as data (techniques 2.1): what deferred techniques store of each sample.
+// G-buffer layouts as data (docs/techniques/deferred.md#g-buffers): what deferred techniques store of each
+// sample.
 #include <array>
 #include <cstdint>
 #include <span>

@@ -11,7 +11,7 @@ struct DownsampleUniforms {
 const pipeline::FragmentProgram& downsample_program();
 
 struct MergeUniforms {
-  int samples = 1;  ///< of all layers
+  int samples = 1;  ///< samples of all layers together
 };
 /// Mean of all samples of image slot 0, layer by layer: the resolve of a multicast target.
 const pipeline::FragmentProgram& merge_program();

@@ -1,14 +1,13 @@
 #pragma once
-// The four passes of CMAA (techniques 7.4). An invocation works on 2x2 pixels of the image; a depth image of
-// half the size holds which of them are still of interest.
+// The four passes of CMAA (docs/techniques/filters.md#cmaa). An invocation works on 2x2 pixels of the image;
+// a depth image of half the size holds which of them are still of interest.
 #include "pipeline/batch/program.h"
 
 namespace hwsim::algos {
 
 struct CmaaUniforms {
   float threshold = 1.0f / 13.0f;
-  bool average_quirk =
-      true;  ///< of pruning: the mean is taken of the last four neighbors, as the public port does
+  bool average_quirk = true;  ///< pruning takes the mean of the last four neighbors, as the public port does
 };
 
 /// Image slot 0: perceptual color. Strengths of each pixel's edges to the right and below, four bits each;

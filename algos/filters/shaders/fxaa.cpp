@@ -20,7 +20,8 @@ enum FxaaBlock : int {
   kLastStepRule,
 };
 
-/// One pixel's filter. Names follow techniques 7.1: m is the pixel, n, s, w, e its neighbors.
+/// One pixel's filter. Names follow docs/techniques/filters.md#fxaa: m is the pixel, n, s, w, e its
+/// neighbors.
 template <class S>
 class Fxaa {
  public:
@@ -157,7 +158,7 @@ class Fxaa {
   F m_, n_, s_luma_, w_, e_;
   F max_, min_, range_;
   M horizontal_;
-  F sign_, average_, gradient_;  ///< of the edge: side, mean luma, a quarter of the gradient across it
+  F sign_, average_, gradient_;  ///< the edge's side, mean luma, and a quarter of the gradient across it
 };
 
 template <bool kDiscard>

@@ -1,5 +1,6 @@
 #pragma once
-// FXAA 3.11 Quality and AXAA (techniques 7.1, 7.2): one shader, whose rules are switched by uniforms.
+// FXAA 3.11 Quality and AXAA (docs/techniques/filters.md#fxaa): one shader, whose rules are switched by
+// uniforms.
 #include <array>
 
 #include "pipeline/batch/program.h"
@@ -18,9 +19,9 @@ struct FxaaUniforms {
   // AXAA's rules
   bool skip_filtered = false;    ///< 1: crosses with a value near their middle are filtered already
   bool keep_thin_lines = false;  ///< 2
-  bool same_sign = false;        ///< of 2: both gradients point the same way
+  bool same_sign = false;        ///< rule 2 asks that both gradients point the same way
   bool adaptive_steps = false;   ///< 3
-  bool metric_min = false;       ///< of 3: the smaller contrast decides, as printed
+  bool metric_min = false;       ///< rule 3 takes the smaller contrast, as printed
   AlphaMode alpha_mode = AlphaMode::range;
   float alpha = 0.1f;
 };

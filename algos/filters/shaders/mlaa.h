@@ -1,5 +1,5 @@
 #pragma once
-// The three passes of MLAA on a GPU (techniques 7.5).
+// The three passes of MLAA on a GPU (docs/techniques/filters.md#mlaa).
 #include "pipeline/batch/program.h"
 
 namespace hwsim::algos {

@@ -174,7 +174,7 @@ class SmaaWeights {
     w.second = w.second * min(max(outside, F(0.0f)), F(1.0f));
   }
 
-  /// Of a fetch a quarter pixel to the right: red of the right texel, green of the left one.
+  /// Splits a fetch a quarter pixel to the right: red of the right texel, green of the left one.
   static Color split_quarter(const Color& c) {
     return {floor(c.x * abs(F(5.0f) * c.x - F(3.75f)) + F(0.5f)), floor(c.y + F(0.5f)), c.z, c.w};
   }

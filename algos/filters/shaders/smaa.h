@@ -1,5 +1,5 @@
 #pragma once
-// The three passes of SMAA 1x (techniques 7.3).
+// The three passes of SMAA 1x (docs/techniques/filters.md#smaa).
 #include "pipeline/batch/program.h"
 
 namespace hwsim::algos {
@@ -7,7 +7,7 @@ namespace hwsim::algos {
 struct SmaaUniforms {
   float threshold = 0.1f;
   bool color_edges = false;  ///< edges by the largest difference of a channel, otherwise by luma
-  int search_steps = 16;     ///< of two pixels
+  int search_steps = 16;     ///< steps of two pixels each
   int diagonal_steps = 8;
   float corner_rounding = 0.25f;
   bool corners = true;

@@ -1,5 +1,6 @@
-// The record that SBAA keeps of a surface (techniques 3.5), packed with the codecs of the G-buffer's formats,
-// so that a record and a sample of gb_sbaa40 hold the same values. Per-target include guard.
+// The record that SBAA keeps of a surface (docs/techniques/sbaa.md#records), packed with the codecs of the
+// G-buffer's formats, so that a record and a sample of gb_sbaa40 hold the same values. Per-target include
+// guard.
 #include <hwy/highway.h>
 #include "algos/base/shaders/gbuffer-inl.h"
 #include "algos/sbaa/shaders/programs.h"

@@ -1,5 +1,5 @@
-// Points on a triangle: where they lie, what they stand for, and what depth is tested there (techniques 5.2).
-// Per-target include guard, see simd/lanes-inl.h.
+// Points on a triangle: where they lie, what they stand for, and what depth is tested there
+// (docs/techniques/sss.md#points). Per-target include guard, see simd/lanes-inl.h.
 #include <hwy/highway.h>
 #include "algos/sss/shaders/view-inl.h"
 #if defined(HWSIM_ALGOS_SSS_SHADERS_PATTERN_INL_H_) == defined(HWY_TARGET_TOGGLE)

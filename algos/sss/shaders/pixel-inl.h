@@ -1,4 +1,4 @@
-// Which places of a pixel a triangle covers (techniques 5.4). Per-target include guard, see
+// Which places of a pixel a triangle covers (docs/techniques/sss.md#lists). Per-target include guard, see
 // simd/lanes-inl.h.
 #include <hwy/highway.h>
 #include "algos/sss/shaders/view-inl.h"
