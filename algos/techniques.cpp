@@ -1,4 +1,3 @@
-// From "wire_aa+msaa4x+fxaa:preset=39" to a technique and back.
 #include "algos/techniques.h"
 
 #include <algorithm>
@@ -39,12 +38,12 @@ void add_unknown(Problems& problems, std::string_view id, std::string_view text)
     add(problems, "T001", "unknown technique " + quoted(id), did_you_mean(id, ids), help);
 }
 
-const ParameterInfo* find_parameter(const TechniqueInfo& technique, std::string_view name,
-                                    Problems& problems) {
+BoundOption* find_option(const TechniqueInfo& technique, std::vector<BoundOption>& options,
+                         std::string_view name, Problems& problems) {
   std::vector<std::string> names;
-  for (const ParameterInfo& p : technique.parameters) {
-    if (p.name == name) return &p;
-    names.emplace_back(p.name);
+  for (BoundOption& option : options) {
+    if (option.info.name == name) return &option;
+    names.emplace_back(option.info.name);
   }
   add(problems, "T002", "technique " + quoted(technique.id) + " has no parameter " + quoted(name),
       did_you_mean(name, names), "`hwsim show " + std::string(technique.id) + "` lists them");
@@ -71,20 +70,48 @@ double choice_index(std::string_view choices, std::string_view value) {
   }
 }
 
-double parse_value(const TechniqueInfo& technique, const ParameterInfo& p, std::string_view text,
-                   Problems& problems) {
-  double value = p.choices.empty() ? 0 : choice_index(p.choices, text);
-  if (!p.choices.empty() && value >= 0) return value;
+/// Sets the option. Returns what the value must be if it is not.
+std::string set_from_text(BoundOption& option, std::string_view text) {
+  const OptionInfo& info = option.info;
+  if (!info.choices.empty()) {  // no index into choices: those may be numbers themselves
+    const double index = choice_index(info.choices, text);
+    if (index < 0) return "must be one of " + std::string(info.choices);
+    option.set(index);
+    return "";
+  }
+  double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool number =  // not an index into choices: those may be numbers themselves
-      p.choices.empty() && error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-  if (number && value >= p.min && value <= p.max) return value;
+  const bool number = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  if (!number || value < info.min || value > info.max)
+    return "must be between " + number_text(info.min) + " and " + number_text(info.max);
+  if (info.whole && value != std::floor(value)) return "must be a whole number";
+  option.set(value);
+  return "";
+}
+
+void set_option(const TechniqueInfo& technique, BoundOption& option, std::string_view text,
+                Problems& problems) {
+  const std::string allowed = set_from_text(option, text);
+  if (allowed.empty()) return;
   add(problems, "T003",
-      "technique " + quoted(technique.id) + ": " + std::string(p.name) + " = " + std::string(text) +
-          (p.choices.empty() ? ", must be between " + number_text(p.min) + " and " + number_text(p.max)
-                             : ", must be one of " + std::string(p.choices)),
+      "technique " + quoted(technique.id) + ": " + std::string(option.info.name) + " = " + std::string(text) +
+          ", " + allowed,
       "", "`hwsim show " + std::string(technique.id) + "` describes it");
-  return p.default_value;
+}
+
+void parse_options(std::string_view text, TechniquePart& part, Problems& problems) {
+  std::vector<BoundOption> options = part.options.bound();
+  while (!text.empty()) {
+    const std::size_t comma = text.find(',');
+    const std::string_view pair = text.substr(0, comma);
+    const std::size_t equals = pair.find('=');
+    if (equals == std::string_view::npos)
+      add(problems, "T002", "technique parameter " + quoted(pair) + " has no value", "",
+          "write it as key=value");
+    else if (BoundOption* option = find_option(*part.info, options, pair.substr(0, equals), problems))
+      set_option(*part.info, *option, pair.substr(equals + 1), problems);
+    text = comma == std::string_view::npos ? std::string_view{} : text.substr(comma + 1);
+  }
 }
 
 TechniquePart parse_part(std::string_view text, std::string_view whole, Problems& problems) {
@@ -95,19 +122,8 @@ TechniquePart parse_part(std::string_view text, std::string_view whole, Problems
     add_unknown(problems, text.substr(0, colon), whole);
     return part;
   }
-  for (const ParameterInfo& p : part.info->parameters) part.parameters.emplace(p.name, p.default_value);
-  std::string_view rest = colon == std::string_view::npos ? "" : text.substr(colon + 1);
-  while (!rest.empty()) {
-    const std::size_t comma = rest.find(',');
-    const std::string_view pair = rest.substr(0, comma);
-    const std::size_t equals = pair.find('=');
-    if (equals == std::string_view::npos)
-      add(problems, "T002", "technique parameter " + quoted(pair) + " has no value", "",
-          "write it as key=value");
-    else if (const ParameterInfo* p = find_parameter(*part.info, pair.substr(0, equals), problems))
-      part.parameters[std::string(p->name)] = parse_value(*part.info, *p, pair.substr(equals + 1), problems);
-    rest = comma == std::string_view::npos ? std::string_view{} : rest.substr(comma + 1);
-  }
+  part.options = part.info->defaults;
+  parse_options(colon == std::string_view::npos ? "" : text.substr(colon + 1), part, problems);
   return part;
 }
 
@@ -141,11 +157,6 @@ pipeline::FrameGraph start_from_image(const TechniqueChoice& choice, const Frame
 
 }  // namespace
 
-std::string_view kind_name(TechniqueKind kind) {
-  constexpr std::array<std::string_view, 3> kNames = {"base", "modifier", "filter"};
-  return kNames.at(static_cast<std::size_t>(kind));
-}
-
 const TechniquePart& TechniqueChoice::base() const {
   return *std::find_if(parts.begin(), parts.end(),
                        [](const TechniquePart& part) { return part.info->kind() == TechniqueKind::base; });
@@ -165,7 +176,7 @@ TechniqueChoice parse_technique(std::string_view text) {
     if (plus == std::string_view::npos) break;
     rest.remove_prefix(plus + 1);
   }
-  if (!has_base) choice.parts.push_back({find_technique("none"), {}});
+  if (!has_base) choice.parts.push_back({find_technique("none")});
   for (std::size_t i = 0; i < choice.parts.size(); ++i)
     for (std::size_t j = i + 1; j < choice.parts.size(); ++j)
       check_pair(*choice.parts[i].info, *choice.parts[j].info, problems);
@@ -180,14 +191,16 @@ TechniqueChoice parse_technique(std::string_view text) {
 }
 
 std::string technique_text(const TechniquePart& part, bool complete) {
-  std::string parameters;
-  for (const ParameterInfo& p : part.info->parameters) {
-    const double value = part.parameters.find(p.name)->second;
-    if (!complete && value == p.default_value) continue;
-    parameters += (parameters.empty() ? ":" : ",") + std::string(p.name) + "=" +
-                  (p.choices.empty() ? number_text(value) : std::string(choice_name(p.choices, value)));
+  const std::vector<OptionInfo> values = part.options.infos();
+  std::string text;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const OptionInfo& option = values[i];
+    const double value = option.default_value;
+    if (!complete && value == part.info->options[i].default_value) continue;
+    text += (text.empty() ? ":" : ",") + std::string(option.name) + "=" +
+            (option.choices.empty() ? number_text(value) : std::string(choice_name(option.choices, value)));
   }
-  return std::string(part.info->id) + parameters;
+  return std::string(part.info->id) + text;
 }
 
 std::string technique_text(const TechniqueChoice& choice, bool complete) {
@@ -218,14 +231,26 @@ void require_filters(const TechniqueChoice& choice) {
 pipeline::FrameGraph build_frame(const TechniqueChoice& choice, const FrameRequest& request) {
   FrameRequest modified = request;
   for (const TechniquePart& part : choice.parts)
-    if (part.info->modify != nullptr) part.info->modify(modified, part.parameters);
+    if (part.info->modify) part.info->modify(modified, part.options);
   const TechniquePart& base = choice.base();
   pipeline::FrameGraph graph =
-      request.image ? start_from_image(choice, request) : base.info->build(modified, base.parameters);
+      request.image ? start_from_image(choice, request) : base.info->build(modified, base.options);
   for (const TechniquePart& part : choice.parts)
-    if (part.info->filter != nullptr)
-      graph.set_output(part.info->filter(graph, graph.output(), part.parameters), Format::rgba8_srgb);
+    if (part.info->filter)
+      graph.set_output(part.info->filter(graph, graph.output(), part.options), Format::rgba8_srgb);
   return graph;
+}
+
+std::vector<Diagnostic> frame_notes(const TechniqueChoice& choice, const WorkTrace& trace) {
+  std::vector<Diagnostic> all;
+  for (const TechniquePart& part : choice.parts) {
+    if (!part.info->notes) continue;
+    for (Diagnostic note : part.info->notes(part.options, trace)) {
+      note.message = technique_text(choice) + ": " + note.message;
+      all.push_back(std::move(note));
+    }
+  }
+  return all;
 }
 
 }  // namespace hwsim::algos

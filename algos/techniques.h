@@ -1,22 +1,18 @@
 #pragma once
-// All techniques: the registry, how a text names a combination of them, and the frame graph of a combination.
+// How a text names techniques and their options, and the frame graph of a combination.
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "algos/base/technique.h"
+#include "algos/rooms.h"
 
 namespace hwsim::algos {
 
-std::string_view kind_name(TechniqueKind kind);
-
-/// The explicit registry, family by family (registry.cpp).
-std::span<const TechniqueInfo> techniques();
-
 struct TechniquePart {
   const TechniqueInfo* info = nullptr;
-  Parameters parameters;  ///< complete: defaults filled in
+  Options options{NoOptions{}};
 };
 
 /// Modifiers, one base, then filters in the order in which they are applied.
@@ -30,7 +26,7 @@ struct TechniqueChoice {
 /// cannot be.
 TechniqueChoice parse_technique(std::string_view text);
 
-/// As parse_technique reads it: the parameters that differ from their defaults; with `complete`, all of them.
+/// As parse_technique reads it: the options that differ from their defaults; with `complete`, all of them.
 /// A base `none` beside other parts is left out.
 std::string technique_text(const TechniqueChoice& choice, bool complete = false);
 std::string technique_text(const TechniquePart& part, bool complete = false);
@@ -40,5 +36,8 @@ void require_filters(const TechniqueChoice& choice);
 
 /// The frame graph of the combination.
 pipeline::FrameGraph build_frame(const TechniqueChoice& choice, const FrameRequest& request);
+
+/// What its techniques say of a frame that was emulated: each message begins with the text of the choice.
+std::vector<Diagnostic> frame_notes(const TechniqueChoice& choice, const WorkTrace& trace);
 
 }  // namespace hwsim::algos

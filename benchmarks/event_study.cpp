@@ -156,7 +156,7 @@ struct Probe {
     std::uint64_t pixels = 0, counted = 0;
     for (const int e : events) pixels += static_cast<std::uint64_t>(e);
     for (const PassWork& pass : trace.passes)
-      for (const auto& chunk : pass.chunks) counted += chunk.technique.lit_samples;
+      for (const auto& chunk : pass.chunks) counted += chunk.technique[algos::BaseCounters::lit_samples];
     if (pixels == counted) return;
     std::fprintf(stderr, "%llu events in pixels, %llu counted\n", static_cast<unsigned long long>(pixels),
                  static_cast<unsigned long long>(counted));

@@ -39,6 +39,8 @@ class Pool {
     if (added) passes_.passes.push_back(pass);
     return known->second;
   }
+  /// Ids of counters are those of the program that made the traces: the same in all.
+  void name_counters(const WorkTrace& trace) { passes_.technique_counters = trace.technique_counters; }
   const WorkTrace& passes() const { return passes_; }
 
  private:
@@ -67,6 +69,7 @@ std::vector<std::uint8_t> encode_kept(const KeptTraces& kept) {
         run, [&](const std::string& text) { out.text(text); },
         [&](auto whole) { out.integer(static_cast<std::int64_t>(whole)); },
         [&](double real) { out.real(real); });
+    pool.name_counters(*trace);
     out.text(trace->scene);
     out.text(trace->technique);
     out.count(trace->peak_memory_bytes);
@@ -99,11 +102,13 @@ KeptTraces decode_kept(std::span<const std::uint8_t> bytes) {
   }
   const DecodedTrace pool = decode_trace(in.rest());
   if (!pool.trace) throw DamagedBytes(pool.damage);
-  for (const auto& [trace, numbers] : passes_of)
+  for (const auto& [trace, numbers] : passes_of) {
+    trace->technique_counters = pool.trace->technique_counters;
     for (const std::uint64_t number : numbers) {
       if (number >= pool.trace->passes.size()) throw DamagedBytes("a run names a pass that is not there");
       trace->passes.push_back(pool.trace->passes[number]);
     }
+  }
   return kept;
 }
 

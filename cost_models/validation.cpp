@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <stdexcept>
 
 #include "cost_models/baselines.h"
 #include "cost_models/covariance.h"
@@ -298,10 +299,20 @@ Figures figures_of(const Experiment& experiment, const std::vector<HeldOut>& cel
   return figures;
 }
 
+/// The count of a technique's counter, by its id: which slot it has, techniques decide.
+std::uint64_t technique_count(const WorkTrace& trace, std::string_view id) {
+  const auto found = std::ranges::find(trace.technique_counters, id);
+  if (found == trace.technique_counters.end())
+    throw std::logic_error("the trace of " + trace.technique + " does not name the counter " +
+                           std::string(id));
+  const auto slot = static_cast<std::size_t>(found - trace.technique_counters.begin());
+  return total(trace).technique[TechniqueCounter{slot}];
+}
+
 double counted(const Experiment& experiment, const Replay& replay, std::size_t cell) {
   if (experiment.cells[cell].unit == "mib")
     return static_cast<double>(replay.trace->allocated_memory_bytes) / kMib;
-  return static_cast<double>(total(*replay.trace).technique.lit_samples);
+  return static_cast<double>(technique_count(*replay.trace, "technique.lit_samples"));
 }
 
 }  // namespace hwsim::cost_models

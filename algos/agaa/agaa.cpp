@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "algos/agaa/layout.h"
+#include "algos/agaa/options.h"
 #include "algos/agaa/shaders/programs.h"
 #include "algos/agaa/uniforms.h"
 #include "algos/base/frame_parts.h"
@@ -13,63 +14,10 @@ namespace hwsim::algos {
 namespace {
 using namespace pipeline;
 
-/// Parameters, read.
-struct Options {
-  int aggregates, samples;
-  float k_m, separation;
-  Ndf ndf;
-  bool ggx;
-  DiffuseFilter diffuse;
-  bool separate_gloss;
-  bool footprint;
-  float footprint_px;
-  bool unit_mean, squared_sums;
-  int shadow_taps;
-  MaskStore mask;
-  bool floats, moments, light_variance;
-  int visible_normals;
-  float gloss_reference;
-  int emulate, accumulate;
-  bool centroid, dither;
-  int plane_path;
-  bool covariance;
-};
-
-Options read_options(const Parameters& parameters) {
-  const auto value = [&](std::string_view name) { return parameters.find(name)->second; };
-  const auto index = [&](std::string_view name) { return static_cast<int>(value(name)); };
-  const auto real = [&](std::string_view name) { return static_cast<float>(value(name)); };
-  return {index("c") + 1,
-          4 << index("msaa"),
-          real("k"),
-          real("t"),
-          static_cast<Ndf>(index("ndf")),
-          index("brdf") != 0,
-          static_cast<DiffuseFilter>(index("diffuse_filter")),
-          index("gloss") != 0,
-          index("k_mode") != 0,
-          real("footprint_px"),
-          index("mean_normal") == 0,
-          index("seed_sum") != 0,
-          index("shadow_taps"),
-          static_cast<MaskStore>(index("agg_bytes")),
-          index("agg_float") != 0,
-          index("depth_moments") != 0,
-          index("light_variance") != 0,
-          index("visible_normals"),
-          real("s_ref"),
-          index("emulate"),
-          index("accumulate"),
-          index("centroid") != 0,
-          index("a2c_dither") != 0,
-          index("plane_path"),
-          index("shadow_axis") != 0};
-}
-
 /// Builds the frame pass by pass.
 class Builder {
  public:
-  Builder(const FrameRequest& request, const Options& options)
+  Builder(const FrameRequest& request, const AgaaOptions& options)
       : graph_(request.scene, request.width_px, request.height_px),
         o_(options),
         parts_(prepare_frame(graph_, request)),
@@ -81,9 +29,9 @@ class Builder {
     // A GPU without mixed samples adds up in a storage buffer; without coverage after depth it cannot know
     // what to add, and the frame is refused by the name of that switch.
     const GpuFeatures& f = request.features;
-    enum Accumulate { automatic, blend, atomics };
-    atomic_ = o_.accumulate == atomics ||
-              (o_.accumulate == automatic && !(f.target_independent_raster && f.coverage_override));
+    atomic_ =
+        o_.accumulate == AgaaAccumulate::atomics ||
+        (o_.accumulate == AgaaAccumulate::automatic && !(f.target_independent_raster && f.coverage_override));
     // Color samples divide raster samples: three aggregates take four.
     color_samples_ = o_.aggregates == 3 && !atomic_ ? 4 : o_.aggregates;
     const auto effective =
@@ -91,9 +39,7 @@ class Builder {
     const auto positions = effective.empty() ? standard_sample_positions(o_.samples)
                                              : std::span<const SamplePosition>(effective);
     std::ranges::copy(positions, positions_.begin());
-    const float aspect = static_cast<float>(graph_.width()) / static_cast<float>(graph_.height());
-    view_from_clip_ = glm::inverse(clip_from_view(parts_.camera, aspect));
-    rays_ = center_rays(parts_.camera, view_from_clip_, graph_.width(), graph_.height());
+    rays_ = center_rays(parts_.camera, parts_.view_from_clip, graph_.width(), graph_.height());
     perspective_ = glm::length(rays_.per_y) > 0.0f;
     pixel_m_ = glm::length(perspective_ ? rays_.per_y : rays_.origin_per_y);
   }
@@ -104,7 +50,9 @@ class Builder {
     add_define();
     add_generate();
     if (layers_ > 1 && !atomic_) add_merge();
+    output_ = add_output(graph_);
     add_shade();
+    add_separate_on_output(graph_, parts_, output_);
     return std::move(graph_);
   }
 
@@ -113,9 +61,11 @@ class Builder {
     return graph_.add_image({name, format, graph_.width(), graph_.height(), samples, layers});
   }
 
+  bool separate_gloss() const { return o_.gloss == AgaaGloss::separate; }
+
   LayoutChoice layout_choice(int samples) const {
-    const bool geometric = o_.diffuse == DiffuseFilter::geometric || o_.separate_gloss;
-    return {o_.ndf, o_.mask, samples, geometric, o_.moments && !atomic_, o_.floats};
+    const bool geometric = o_.diffuse == DiffuseFilter::geometric || separate_gloss();
+    return {o_.ndf, o_.mask, samples, geometric, o_.depth_moments && !atomic_, o_.half_floats};
   }
 
   void add_images() {
@@ -162,50 +112,39 @@ class Builder {
   }
 
   DrawBatch visibility_batch(const std::vector<DrawCall>& draws, bool alpha) const {
-    DrawBatch batch;
+    DrawBatch batch = mesh_batch(parts_, draws, mesh_geometry_program());
     batch.state = geometry_state();
     batch.state.coverage.alpha_to_coverage = alpha;
-    batch.state.coverage.alpha_dither = o_.dither;
-    batch.vertex = &mesh_geometry_program();
-    batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{parts_.clip_from_world});
+    batch.state.coverage.alpha_dither = o_.alpha_dither;
     batch.fragment = &agaa_visibility_program(alpha);
     batch.fragment_uniforms = std::make_shared<VisibilityUniforms>(VisibilityUniforms{rays_});
-    batch.draws = draws;
     return batch;
-  }
-
-  Pass& add_compute(const std::string& name, const ComputeProgram& program,
-                    std::shared_ptr<const void> uniforms) {
-    Pass& pass = graph_.add_pass(name, PassKind::compute);
-    pass.compute = &program;
-    pass.groups_x = (graph_.width() + program.group_width - 1) / program.group_width;
-    pass.groups_y = (graph_.height() + program.group_height - 1) / program.group_height;
-    pass.uniforms = std::move(uniforms);
-    return pass;
   }
 
   void add_define() {
     if (code_bits_ == 0) return;  // one aggregate: nothing to tell apart
     auto u = std::make_shared<DefineUniforms>();
-    u->view_from_clip = view_from_clip_;
+    u->view_from_clip = parts_.view_from_clip;
     u->width = graph_.width();
     u->height = graph_.height();
     u->samples = o_.samples;
     u->aggregates = o_.aggregates;
     u->code_bits = code_bits_;
     u->positions = positions_;
-    u->inv_k2 = 1.0f / (o_.k_m * o_.k_m);
-    u->footprint_k = o_.footprint ? o_.footprint_px * pixel_m_ : 0.0f;
+    const auto k_m = static_cast<float>(o_.k_m);
+    u->inv_k2 = 1.0f / (k_m * k_m);
+    u->footprint_k =
+        o_.k_mode == AgaaScale::footprint ? static_cast<float>(o_.footprint_px) * pixel_m_ : 0.0f;
     u->perspective = perspective_;
-    u->separation = o_.separation;
-    u->unit_mean_normal = o_.unit_mean;
-    u->squared_sums = o_.squared_sums;
+    u->separation = static_cast<float>(o_.separation);
+    u->unit_mean_normal = o_.mean_normal == AgaaMeanNormal::unit;
+    u->squared_sums = o_.seed_sum == AgaaSeedSum::squares;
     // A layer's planes are its own: layers that stand for one pixel would have to be matched.
-    enum PlanePath { automatic, on, off };
-    const bool planes = layers_ == 1 && (o_.plane_path == on ||
-                                         (o_.plane_path == automatic && features_.compressed_depth_read));
+    const bool wanted = o_.plane_path == AgaaPlanePath::on ||
+                        (o_.plane_path == AgaaPlanePath::automatic && features_.compressed_depth_read);
+    const bool planes = layers_ == 1 && wanted;
     u->reads_planes = planes;
-    Pass& pass = add_compute("define", agaa_define_program(), std::move(u));
+    Pass& pass = add_frame_compute(graph_, "define", agaa_define_program(), std::move(u));
     pass.sampled = {depth_, normal_};
     pass.targets = {codes_};
     if (planes) pass.depth_planes = depth_;
@@ -216,7 +155,7 @@ class Builder {
     u.targets = targets;
     u.ndf = o_.ndf;
     u.rays = rays_;
-    u.gloss_reference = o_.gloss_reference;
+    u.gloss_reference = static_cast<float>(o_.gloss_reference);
     // 1/8: |v| = 1/9, whose direction 16 bits still hold to 0.3 degrees at a 32nd of full weight. Where
     // diffuse light takes the vector's length, rough materials would darken by more than they gain.
     u.least_exponent = o_.diffuse == DiffuseFilter::folded ? 1.0f : 0.125f;
@@ -246,14 +185,15 @@ class Builder {
     u->view_z_row = -glm::vec4(view[0][2], view[1][2], view[2][2], view[3][2]);
     DrawBatch batch = generate_batch();
     batch.fragment_uniforms = std::move(u);
-    for (const auto* list : {&parts_.draws.opaque, &parts_.draws.mask, &parts_.draws.blend})
-      batch.draws.insert(batch.draws.end(), list->begin(), list->end());
     pass.batches.push_back(std::move(batch));
   }
 
   // Algorithm 2, 1: every sample takes the first fragment that meets its depth, in submission order.
   DrawBatch generate_batch() const {
-    DrawBatch batch;
+    std::vector<DrawCall> draws;
+    for (const auto* list : {&parts_.draws.opaque, &parts_.draws.mask, &parts_.draws.blend})
+      draws.insert(draws.end(), list->begin(), list->end());
+    DrawBatch batch = mesh_batch(parts_, draws, surface_vertex_program(parts_));
     PipelineState& state = batch.state;
     state = geometry_state();
     state.depth = {true, false, Compare::equal};
@@ -267,8 +207,6 @@ class Builder {
       state.blend.assign(targets_.size(),
                          {true, BlendFactor::one, BlendFactor::one, BlendFactor::one, BlendFactor::one, 0xf});
     }
-    batch.vertex = parts_.full_varyings ? &mesh_full_program() : &mesh_surface_program();
-    batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{parts_.clip_from_world});
     batch.fragment = &agaa_generate_program(o_.ndf, parts_.full_varyings, atomic_);
     return batch;
   }
@@ -284,7 +222,7 @@ class Builder {
     u->layers = layers_;
     u->color_samples = color_samples_;
     u->aggregates = o_.aggregates;
-    Pass& pass = add_compute("merge", agaa_merge_program(), std::move(u));
+    Pass& pass = add_frame_compute(graph_, "merge", agaa_merge_program(), std::move(u));
     pass.sampled = targets_;
     // As many samples as aggregates, so far as images have such counts.
     for (const AggregateLayout::Target& target : merged.targets)
@@ -298,24 +236,24 @@ class Builder {
     auto u = std::make_shared<ShadeUniforms>();
     u->aggregate = aggregate_uniforms(layout_.index);
     u->lighting = parts_.lighting;
-    if (o_.ggx) u->lighting.model = ShadingModel::ggx;
-    u->eye_from_clip = glm::mat4(glm::transpose(glm::mat3(parts_.camera.view_from_world))) * view_from_clip_;
+    if (o_.brdf == AgaaBrdf::ggx) u->lighting.model = ShadingModel::ggx;
+    u->eye_from_clip =
+        glm::mat4(glm::transpose(glm::mat3(parts_.camera.view_from_world))) * parts_.view_from_clip;
     u->background = graph_.scene().background;
     u->height = graph_.height();
     u->aggregates = o_.aggregates;
     u->positions = positions_;
     u->diffuse = o_.diffuse;
-    u->separate_gloss = o_.separate_gloss;
+    u->separate_gloss = separate_gloss();
     u->light_variance = o_.light_variance;
-    u->covariance = o_.covariance;
+    u->covariance = o_.shadow_axis == AgaaShadowAxis::places;
     // The rows of view z and w hold no x and y: projections keep the planes of equal depth.
-    const glm::mat4& m = view_from_clip_;
+    const glm::mat4& m = parts_.view_from_clip;
     u->depth_of_z = {-m[3][2], -m[2][2], m[3][3], m[2][3]};
     set_shadow_taps(*u, o_.shadow_taps);
     set_hemisphere(*u, o_.visible_normals);
-    const ImageId output = add_output(graph_);
     Pass& pass = graph_.add_pass("shade", PassKind::full_screen);
-    pass.color = {output};
+    pass.color = {output_};
     if (atomic_)
       pass.storage = {buffer_};
     else
@@ -339,7 +277,7 @@ class Builder {
   }
 
   FrameGraph graph_;
-  const Options& o_;
+  const AgaaOptions& o_;
   FrameParts parts_;
   MulticastPattern pattern_;
   GpuFeatures features_;
@@ -347,66 +285,61 @@ class Builder {
   bool atomic_ = false, perspective_ = true;
   float pixel_m_ = 0.0f;  ///< a pixel's height, at distance 1 if it grows with it
   std::array<SamplePosition, 32> positions_{};
-  glm::mat4 view_from_clip_{1.0f};
   PixelRays rays_;
   AggregateLayout layout_;
-  ImageId depth_, normal_, codes_;
+  ImageId depth_, normal_, codes_, output_;
   std::vector<ImageId> targets_;
   BufferId buffer_;
 };
 
-FrameGraph build_agaa(const FrameRequest& request, const Parameters& parameters) {
-  const Options options = read_options(parameters);
+FrameGraph build_agaa(const FrameRequest& request, const AgaaOptions& options) {
   return Builder(request, options).build();
 }
 
-constexpr ParameterInfo kParameters[] = {
-    {"c", 1, 0, 3, "aggregates a pixel; three take the memory of four where they are color samples",
-     "1|2|3|4"},
-    {"msaa", 1, 0, 3, "visibility samples a pixel", "4|8|16|32"},
-    {"k", 0.1, 0.001, 10, "length at which positions weigh as much as normals, m"},
-    {"t", 0.02, 0, 1, "distance that keeps aggregates apart"},
-    {"ndf", 0, 0, 2, "distribution of normals", "toksvig|lean|sggx"},
-    {"brdf", 0, 0, 1, "specular reflection", "blinn_phong|ggx"},
-    {"diffuse_filter", 3, 0, 3,
-     "diffuse light over the normals: none, by the lobe that holds the gloss too, by a mean of unit normals "
-     "beside "
-     "it, or by the samples' normals of the first pass",
-     "off|folded|geometric|samples"},
-    {"gloss", 0, 0, 1, "folded into the normals' lobe, or stored beside it", "folded|separate"},
-    {"k_mode", 0, 0, 1, "k as given, or at least footprint_px pixels", "world|footprint"},
-    {"footprint_px", 8, 1, 64, "with k_mode=footprint"},
-    {"mean_normal", 0, 0, 1, "of the first seed's search", "unit|raw"},
-    {"seed_sum", 0, 0, 1, "further seeds: by sums of distances, or of their squares", "d|d2"},
-    {"shadow_taps", 4, 1, 8, "along the main axis of an aggregate's samples"},
-    {"agg_bytes", 0, 0, 2, "mask: as many bytes as it needs, a sample count instead, or 32 bits of its own",
-     "natural|16|20"},
-    {"agg_float", 0, 0, 1, "half floats in the aggregate G-buffer", "off|on"},
-    {"depth_moments", 0, 0, 1, "depth's moments stored, instead of read from the samples", "off|on"},
-    {"light_variance", 0, 0, 1, "directions to near lights widen the lobe", "off|on"},
-    {"visible_normals", 8, 4, 32, "of SGGX's diffuse light"},
-    {"s_ref", 0, 0, 65535, "Toksvig's reference exponent; 0: infinite"},
-    {"emulate", 0, 0, 2, "layers of 8 samples, by viewport multicast, or native samples", kEmulateChoices},
-    {"accumulate", 0, 0, 2, "aggregates add up by blending into mixed samples, or by atomics",
-     "auto|blend|atomics"},
-    kCentroid,
-    {"plane_path", 0, 0, 2,
-     "native samples: depth tiles that are compressed to few planes take those for aggregates",
-     "auto|on|off"},
-    {"a2c_dither", 1, 0, 1, "alpha to coverage rounds by 2x2 pixels", "off|on"},
-    {"shadow_axis", 0, 0, 1,
-     "along which shadows are filtered: the depths of an aggregate's samples, or their places",
-     "depth|places"},
-};
+constexpr MessageCode kPlaceLeftEmpty = {
+    "T102", "an aggregate's place is left empty",
+    "Mixed samples: the color samples of a target divide its raster samples, so three aggregates are stored "
+    "as four. The image is not affected; memory and its bandwidth are those of four."};
 
-constexpr TechniqueInfo kTechniques[] = {
-    {"agaa",
-     "aggregate G-buffer: dense visibility, up to four pre-filtered surfaces a pixel (Crassin et al. 2016)",
-     kParameters, build_agaa},
+/// Samples of a pixel that the aggregates' blended targets have; 0 without such targets.
+int target_samples(const WorkTrace& trace) {
+  for (const PassWork& pass : trace.passes)
+    if (pass.name == "generate" && !pass.color_targets.empty()) return pass.color_targets.front().samples;
+  return 0;
+}
+
+std::vector<Diagnostic> notes(const AgaaOptions& options, const WorkTrace& trace) {
+  const int samples = target_samples(trace);
+  if (samples <= options.aggregates) return {};
+  Diagnostic note;
+  note.severity = Severity::note;
+  note.code = kPlaceLeftEmpty.code;
+  note.message = "color samples divide raster samples: " + std::to_string(options.aggregates) +
+                 " aggregates take the memory of " + std::to_string(samples);
+  note.help = "accumulate=atomics stores them without a gap";
+  return {note};
+}
+
+constexpr CounterLaw kLaws[] = {
+    HWSIM_LAW_AT_MOST("technique.agaa_plane_split_pixels <= technique.agaa_aggregates",
+                      c.technique[AgaaCounters::agaa_plane_split_pixels],
+                      c.technique[AgaaCounters::agaa_aggregates]),
+    HWSIM_LAW_AT_MOST("technique.agaa_mixed_code_fragments <= ps.invocations",
+                      c.technique[AgaaCounters::agaa_mixed_code_fragments], c.ps.invocations),
 };
 
 }  // namespace
 
-std::span<const TechniqueInfo> agaa_techniques() { return kTechniques; }
+Room agaa_room() {
+  static constexpr MessageCode kCodes[] = {kPlaceLeftEmpty};
+  const TechniqueInfo agaa = base_technique(
+      "agaa",
+      "aggregate G-buffer: dense visibility, up to four pre-filtered surfaces a pixel (Crassin et al. 2016)",
+      build_agaa);
+  return {.techniques = {with_notes(agaa, notes)},
+          .counters = AgaaCounters::kDeclared,
+          .laws = kLaws,
+          .codes = kCodes};
+}
 
 }  // namespace hwsim::algos

@@ -1,9 +1,10 @@
 #pragma once
-// Aggregate G-buffer anti-aliasing (techniques 4).
+// Aggregate G-buffer anti-aliasing (techniques 4; Crassin et al. 2016): dense visibility, few pre-filtered
+// surfaces a pixel.
 #include "algos/base/technique.h"
 
 namespace hwsim::algos {
 
-std::span<const TechniqueInfo> agaa_techniques();
+Room agaa_room();
 
 }  // namespace hwsim::algos

@@ -4,18 +4,12 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "algos/wire/draws.h"
 #include "pipeline/emulate/material_views.h"
 #include "pipeline/shade/mesh_vertex.h"
 
 namespace hwsim::algos {
 namespace {
 using namespace pipeline;
-
-/// Opaque wires are drawn apart where the request says so.
-bool is_wire(const FrameRequest& request, const Mesh& mesh, const Material& material) {
-  return request.wires && !mesh.radius.empty() && material.alpha_mode == AlphaMode::opaque;
-}
 
 using ByDepth = std::vector<std::pair<float, DrawCall>>;
 
@@ -30,7 +24,7 @@ std::vector<DrawCall> back_to_front(ByDepth calls) {
 DrawLists list_draws(const FrameRequest& request, const Camera& camera) {
   const Scene& scene = *request.scene;
   DrawLists lists;
-  ByDepth blended, wires;
+  ByDepth blended, separate;
   for (int i = 0; i < static_cast<int>(scene.instances.size()); ++i) {
     const Instance& instance = scene.instances[static_cast<std::size_t>(i)];
     const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
@@ -39,8 +33,8 @@ DrawLists list_draws(const FrameRequest& request, const Camera& camera) {
     for (int p = 0; p < static_cast<int>(mesh.parts.size()); ++p) {
       const Mesh::Part& part = mesh.parts[static_cast<std::size_t>(p)];
       const Material& material = scene.materials[static_cast<std::size_t>(part.material)];
-      if (is_wire(request, mesh, material)) {
-        wires.push_back({view_z, sorted_wires(scene, camera, {i, p})});
+      if (request.separate && request.separate->takes(mesh, material)) {
+        separate.push_back({view_z, request.separate->prepare(scene, camera, {i, p})});
         continue;
       }
       switch (material.alpha_mode) {
@@ -57,7 +51,7 @@ DrawLists list_draws(const FrameRequest& request, const Camera& camera) {
     }
   }
   lists.blend = back_to_front(std::move(blended));
-  lists.wires = back_to_front(std::move(wires));
+  lists.separate = back_to_front(std::move(separate));
   return lists;
 }
 
@@ -154,7 +148,7 @@ void add_shadow_map(FrameGraph& graph, FrameParts& parts) {
   pass.width = pass.height = size;
   pass.depth = parts.shadow_map;
   pass.batches.push_back(depth_batch(clip, parts.draws.opaque, false));
-  if (!parts.draws.wires.empty()) pass.batches.push_back(depth_batch(clip, parts.draws.wires, false));
+  if (!parts.draws.separate.empty()) pass.batches.push_back(depth_batch(clip, parts.draws.separate, false));
   if (!parts.draws.mask.empty()) pass.batches.push_back(depth_batch(clip, parts.draws.mask, true));
   const float half = 0.5f * static_cast<float>(size);
   const glm::mat4 texels = glm::translate(glm::mat4(1.0f), glm::vec3(half, half, 0.0f)) *
@@ -170,16 +164,48 @@ void add_shadow_map(FrameGraph& graph, FrameParts& parts) {
 
 DrawBatch surface_batch(const FrameParts& parts, const ForwardTarget& target,
                         const std::vector<DrawCall>& draws, bool alpha_test) {
-  DrawBatch batch;
+  DrawBatch batch = mesh_batch(parts, draws, surface_vertex_program(parts));
   batch.state = opaque_state(target);
-  batch.vertex = parts.full_varyings ? &mesh_full_program() : &mesh_surface_program();
   batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(
       MeshVertexUniforms{jittered(parts.clip_from_world, target.jitter_px, target.width, target.height)});
   batch.fragment = &forward_program(parts.full_varyings, alpha_test);
   batch.fragment_uniforms =
       std::make_shared<ForwardUniforms>(ForwardUniforms{parts.lighting, parts.full_varyings});
-  batch.draws = draws;
   return batch;
+}
+
+/// Depth of what is opaque, at one sample a pixel, for passes over a finished image.
+ForwardTarget add_output_target(FrameGraph& graph, const FrameParts& parts, ImageId output) {
+  ForwardTarget target;
+  target.width = graph.width();
+  target.height = graph.height();
+  target.color = output;
+  target.depth = graph.add_image({"blended_depth", Format::d32_float, target.width, target.height, 1});
+  graph.add_clear("blended_clear", {target.depth});
+  Pass& pass = graph.add_pass("blended_depth", PassKind::draw);
+  pass.depth = target.depth;
+  const auto add = [&](const std::vector<DrawCall>& draws, bool alpha_test) {
+    if (draws.empty()) return;
+    pass.batches.push_back(depth_batch(parts.clip_from_world, draws, alpha_test));
+    pass.batches.back().state.raster.cull = CullMode::back;
+  };
+  add(parts.draws.opaque, false);
+  add(parts.draws.mask, true);
+  return target;
+}
+
+void add_separate(FrameGraph& graph, const FrameParts& parts, const std::string& prefix,
+                  const ForwardTarget& target) {
+  if (parts.draws.separate.empty()) return;
+  const SeparateDraws& separate = *parts.request->separate;
+  add_target_pass(graph, parts, prefix + separate.pass_name(), target).batches =
+      separate.batches(parts, target);
+}
+
+}  // namespace
+
+void describe_centroid(OptionList& list, bool& centroid) {
+  list.choice("centroid", centroid, "off|on", "attributes inside the primitive at partly covered pixels");
 }
 
 Pass& add_target_pass(FrameGraph& graph, const FrameParts& parts, const std::string& name,
@@ -197,7 +223,19 @@ Pass& add_target_pass(FrameGraph& graph, const FrameParts& parts, const std::str
   return pass;
 }
 
-}  // namespace
+const VertexProgram& surface_vertex_program(const FrameParts& parts) {
+  return parts.full_varyings ? mesh_full_program() : mesh_surface_program();
+}
+
+DrawBatch mesh_batch(const FrameParts& parts, const std::vector<DrawCall>& draws,
+                     const VertexProgram& vertex) {
+  DrawBatch batch;
+  batch.state = opaque_state({});
+  batch.vertex = &vertex;
+  batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{parts.clip_from_world});
+  batch.draws = draws;
+  return batch;
+}
 
 glm::mat4 jittered(const glm::mat4& clip_from_world, glm::vec2 jitter_px, int width, int height) {
   // Clip x and y move by a multiple of w: a sample further right sees what lies further right, so geometry
@@ -218,6 +256,15 @@ PipelineState opaque_state(const ForwardTarget& target) {
   state.raster.sample_rate = target.sample_rate;
   state.raster.sample_positions = target.layers.positions;
   return state;
+}
+
+BlendState blend_over() {
+  BlendState over;
+  over.enabled = true;
+  over.src_color = BlendFactor::src_alpha;
+  over.dst_color = BlendFactor::one_minus_src_alpha;
+  over.dst_alpha = BlendFactor::one_minus_src_alpha;
+  return over;
 }
 
 LightingUniforms frame_lighting(const FrameRequest& request) {
@@ -246,6 +293,7 @@ FrameParts prepare_frame(FrameGraph& graph, const FrameRequest& request) {
   parts.camera = scene.cameras.at(static_cast<std::size_t>(request.camera));
   const float aspect = static_cast<float>(request.width_px) / static_cast<float>(request.height_px);
   parts.clip_from_world = clip_from_view(parts.camera, aspect) * parts.camera.view_from_world;
+  parts.view_from_clip = glm::inverse(clip_from_view(parts.camera, aspect));
   parts.draws = list_draws(request, parts.camera);
   parts.full_varyings = needs_full_varyings(scene);
   parts.lighting = frame_lighting(request);
@@ -266,9 +314,9 @@ ForwardTarget make_forward_target(FrameGraph& graph, const std::string& name, in
   return target;
 }
 
-MulticastPattern multicast_layers(const FrameRequest& request, int samples, int emulate) {
-  enum Emulate { automatic, on, off };
-  const bool native = emulate == off || (emulate == automatic && samples <= request.features.native_msaa_max);
+MulticastPattern multicast_layers(const FrameRequest& request, int samples, Emulate emulate) {
+  const bool native = emulate == Emulate::off ||
+                      (emulate == Emulate::automatic && samples <= request.features.native_msaa_max);
   return native || samples <= 8 ? MulticastPattern{} : multicast_pattern(samples);
 }
 
@@ -279,44 +327,38 @@ void add_forward(FrameGraph& graph, const FrameParts& parts, const std::string& 
   Pass& pass = add_target_pass(graph, parts, prefix + "forward", target);
   pass.batches.push_back(surface_batch(parts, target, parts.draws.opaque, false));
   if (!parts.draws.mask.empty()) pass.batches.push_back(surface_batch(parts, target, parts.draws.mask, true));
-  add_blended(graph, parts, prefix + "blended", target);
+  add_blended(graph, parts, prefix, target);
 }
 
-void add_blended(FrameGraph& graph, const FrameParts& parts, const std::string& name,
+void add_blended(FrameGraph& graph, const FrameParts& parts, const std::string& prefix,
                  const ForwardTarget& target) {
-  add_wires(graph, parts,
-            name.ends_with("blended") ? name.substr(0, name.size() - 7) + "wires" : name + "_wires", target);
+  add_separate(graph, parts, prefix, target);
   if (parts.draws.blend.empty()) return;
-  Pass& pass = add_target_pass(graph, parts, name, target);
+  Pass& pass = add_target_pass(graph, parts, prefix + "blended", target);
   DrawBatch batch = surface_batch(parts, target, parts.draws.blend, false);
   batch.state.depth.write = false;
-  BlendState over;
-  over.enabled = true;
-  over.src_color = BlendFactor::src_alpha;
-  over.dst_color = BlendFactor::one_minus_src_alpha;
-  over.dst_alpha = BlendFactor::one_minus_src_alpha;
-  batch.state.blend = {over};
+  batch.state.blend = {blend_over()};
   pass.batches.push_back(std::move(batch));
 }
 
 void add_blended_on_output(FrameGraph& graph, const FrameParts& parts, ImageId output) {
-  if (parts.draws.blend.empty()) return;
-  ForwardTarget target;
-  target.width = graph.width();
-  target.height = graph.height();
-  target.color = output;
-  target.depth = graph.add_image({"blended_depth", Format::d32_float, target.width, target.height, 1});
-  graph.add_clear("blended_clear", {target.depth});
-  Pass& pass = graph.add_pass("blended_depth", PassKind::draw);
-  pass.depth = target.depth;
-  const auto add = [&](const std::vector<DrawCall>& draws, bool alpha_test) {
-    if (draws.empty()) return;
-    pass.batches.push_back(depth_batch(parts.clip_from_world, draws, alpha_test));
-    pass.batches.back().state.raster.cull = CullMode::back;
-  };
-  add(parts.draws.opaque, false);
-  add(parts.draws.mask, true);
-  add_blended(graph, parts, "blended", target);
+  if (parts.draws.blend.empty() && parts.draws.separate.empty()) return;
+  add_blended(graph, parts, "", add_output_target(graph, parts, output));
+}
+
+void add_separate_on_output(FrameGraph& graph, const FrameParts& parts, ImageId output) {
+  if (parts.draws.separate.empty()) return;
+  add_separate(graph, parts, "", add_output_target(graph, parts, output));
+}
+
+Pass& add_frame_compute(FrameGraph& graph, const std::string& name, const ComputeProgram& program,
+                        std::shared_ptr<const void> uniforms) {
+  Pass& pass = graph.add_pass(name, PassKind::compute);
+  pass.compute = &program;
+  pass.groups_x = (graph.width() + program.group_width - 1) / program.group_width;
+  pass.groups_y = (graph.height() + program.group_height - 1) / program.group_height;
+  pass.uniforms = std::move(uniforms);
+  return pass;
 }
 
 Pass& add_full_screen(FrameGraph& graph, const std::string& name, std::vector<ImageId> sampled,

@@ -13,15 +13,15 @@ namespace hwsim::algos {
 /// Draws by how they are rendered.
 struct DrawLists {
   std::vector<pipeline::DrawCall> opaque;
-  std::vector<pipeline::DrawCall> mask;   ///< alpha-tested
-  std::vector<pipeline::DrawCall> blend;  ///< back to front
-  std::vector<pipeline::DrawCall> wires;  ///< back to front; only where wire anti-aliasing is asked for
+  std::vector<pipeline::DrawCall> mask;      ///< alpha-tested
+  std::vector<pipeline::DrawCall> blend;     ///< back to front
+  std::vector<pipeline::DrawCall> separate;  ///< back to front: what FrameRequest::separate takes
 };
 
 struct FrameParts {
   const FrameRequest* request = nullptr;
   pipeline::Camera camera;
-  glm::mat4 clip_from_world{1.0f};
+  glm::mat4 clip_from_world{1.0f}, view_from_clip{1.0f};
   DrawLists draws;
   bool full_varyings = false;  ///< some mesh has tangents or vertex colors
   pipeline::LightingUniforms lighting;
@@ -36,10 +36,10 @@ pipeline::LightingUniforms frame_lighting(const FrameRequest& request);
 /// added.
 FrameParts prepare_frame(pipeline::FrameGraph& graph, const FrameRequest& request);
 
-/// Where a pixel is covered in part, its center may lie outside of the primitive, and what is interpolated
-/// there is extrapolated: normals of fine meshes then point beyond all that the surface shows.
-inline constexpr ParameterInfo kCentroid{
-    "centroid", 1, 0, 1, "attributes inside the primitive at partly covered pixels", "off|on"};
+/// The option `centroid` of many techniques. Where a pixel is covered in part, its center may lie outside of
+/// the primitive, and what is interpolated there is extrapolated: normals of fine meshes then point beyond
+/// all that the surface shows.
+void describe_centroid(OptionList& list, bool& centroid);
 
 /// A target of a forward pass.
 struct ForwardTarget {
@@ -53,18 +53,50 @@ struct ForwardTarget {
   pipeline::MulticastPattern layers;
 };
 
+/// Draws that a modifier takes from the bases: each base leaves them out of its own passes, and asks for
+/// theirs where it has lit color.
+class SeparateDraws {
+ public:
+  virtual ~SeparateDraws() = default;
+  /// Whether a mesh part is one of them.
+  virtual bool takes(const pipeline::Mesh& mesh, const pipeline::Material& material) const = 0;
+  /// The draw as it stands in DrawLists::separate: its triangles may be another list.
+  virtual pipeline::DrawCall prepare(const pipeline::Scene& scene, const pipeline::Camera& camera,
+                                     pipeline::DrawCall call) const = 0;
+  /// Of their pass, after the base's prefix.
+  virtual std::string pass_name() const = 0;
+  /// Into lit color, with the depth of what is opaque.
+  virtual std::vector<pipeline::DrawBatch> batches(const FrameParts& parts,
+                                                   const ForwardTarget& target) const = 0;
+  /// Their depth alone, in the shape in which `batches` draws them.
+  virtual pipeline::DrawBatch depth_batch(const FrameParts& parts, const ForwardTarget& target) const = 0;
+};
+
+/// The pass of a forward target: its viewports, attachments and the shadow map; without batches.
+pipeline::Pass& add_target_pass(pipeline::FrameGraph& graph, const FrameParts& parts, const std::string& name,
+                                const ForwardTarget& target);
+
+/// Draws in the frame's view: opaque state, `vertex` with its uniforms. The fragment program is the caller's.
+pipeline::DrawBatch mesh_batch(const FrameParts& parts, const std::vector<pipeline::DrawCall>& draws,
+                               const pipeline::VertexProgram& vertex);
+/// Hands on what materials need: the varyings of surfaces, all of them if some mesh has more than the basic.
+const pipeline::VertexProgram& surface_vertex_program(const FrameParts& parts);
+
 /// Background and depth cleared, then everything drawn: opaque, alpha-tested, blended.
 void add_forward(pipeline::FrameGraph& graph, const FrameParts& parts, const std::string& prefix,
                  const ForwardTarget& target);
 
-/// What goes over lit color: wires where wire anti-aliasing is asked for, then draws of blended materials,
-/// depth tested and not written.
-void add_blended(pipeline::FrameGraph& graph, const FrameParts& parts, const std::string& name,
+/// What goes over lit color: separate draws, then draws of blended materials, depth tested and not written.
+/// The passes are `prefix` + "blended" and the like.
+void add_blended(pipeline::FrameGraph& graph, const FrameParts& parts, const std::string& prefix,
                  const ForwardTarget& target);
 
 /// The same onto a finished image of one sample a pixel, when the frame's depth has more: opaque draws are
-/// repeated for a depth of its own. Adds nothing where nothing is blended.
+/// repeated for a depth of its own. Adds nothing where there is nothing to draw.
 void add_blended_on_output(pipeline::FrameGraph& graph, const FrameParts& parts, pipeline::ImageId output);
+
+/// The same for separate draws alone: for bases that draw blended materials as coverage.
+void add_separate_on_output(pipeline::FrameGraph& graph, const FrameParts& parts, pipeline::ImageId output);
 
 /// Depth-stencil image and color image in the frame's size times `scale`.
 ForwardTarget make_forward_target(pipeline::FrameGraph& graph, const std::string& name, int width, int height,
@@ -72,10 +104,16 @@ ForwardTarget make_forward_target(pipeline::FrameGraph& graph, const std::string
                                   Format depth = Format::d24_unorm_s8,
                                   const pipeline::MulticastPattern& layers = {});
 
-/// Values of a parameter `emulate`: sample counts beyond the GPU's by viewport multicast, or not.
+/// Whether sample counts beyond the GPU's are made by viewport multicast.
+enum class Emulate : std::uint8_t { automatic, on, off };
 inline constexpr std::string_view kEmulateChoices = "auto|on|off";
 /// The layers of eight samples that make `samples`; none where they are native, or to be.
-pipeline::MulticastPattern multicast_layers(const FrameRequest& request, int samples, int emulate);
+pipeline::MulticastPattern multicast_layers(const FrameRequest& request, int samples, Emulate emulate);
+
+/// A compute pass with an invocation for each pixel of the frame.
+pipeline::Pass& add_frame_compute(pipeline::FrameGraph& graph, const std::string& name,
+                                  const pipeline::ComputeProgram& program,
+                                  std::shared_ptr<const void> uniforms);
 
 /// A pass of `program` over the whole of `target`.
 pipeline::Pass& add_full_screen(pipeline::FrameGraph& graph, const std::string& name,
@@ -90,5 +128,7 @@ pipeline::ImageId add_output(pipeline::FrameGraph& graph);
 glm::mat4 jittered(const glm::mat4& clip_from_world, glm::vec2 jitter_px, int width, int height);
 
 pipeline::PipelineState opaque_state(const ForwardTarget& target);
+/// Color over color by the alpha that is drawn.
+pipeline::BlendState blend_over();
 
 }  // namespace hwsim::algos

@@ -1,36 +1,30 @@
 #pragma once
-// A technique builds a frame graph and owns its shaders; it runs nothing.
+// What a technique is: a function that builds a frame graph, options, and what it declares of its own. It
+// owns its shaders and runs nothing.
+#include <algorithm>
 #include <cstdint>
-#include <map>
+#include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "algos/base/options.h"
+#include "algos/base/shaders/counters.h"
+#include "hwsim/base/diagnostics.h"
 #include "hwsim/gpu/gpu_features.h"
+#include "hwsim/trace/work_trace.h"
 #include "pipeline/graph/frame_graph.h"
 
 namespace hwsim::algos {
-
-enum class DeferredLighting { stencil, compute_tiles };
 
 /// Which lights a frame has: the scene's and those that the request adds; one, directional if there is one;
 /// or 16, seeded point lights where the scene has fewer (the two profiles of SBAA, section 5.2).
 enum class LightProfile : std::uint8_t { scene, simple, complex };
 inline constexpr int kComplexLights = 16;
-enum class WireDepth { split, none, all };  ///< which wires write depth: wide ones, none, all
 
-/// Wire anti-aliasing (techniques 6), asked for by the modifier wire_aa.
-struct WireOptions {
-  float width_px = 1.0f;       ///< least width
-  float full_light_px = 4.0f;  ///< from this width on a wire is lit as any surface
-  bool half_lambert = false, flatten = false;
-  int half_lambert_power = 2;
-  bool fade_per_pixel = false;
-  WireDepth depth = WireDepth::split;
-};
+class SeparateDraws;  // frame_parts.h
 
 /// What every technique is given.
 struct FrameRequest {
@@ -42,44 +36,101 @@ struct FrameRequest {
   LightProfile lights = LightProfile::scene;
   bool shadows = true;  ///< a shadow map for the scene's shadow caster
   int shadow_map_px = 2048;
-  std::optional<WireOptions> wires;
+  /// A modifier's: parts of the scene that it draws in its own way. Null: bases draw everything.
+  std::shared_ptr<const SeparateDraws> separate;
   /// Stands for the scene, which is empty then: sRGB codes of a finished frame. Only filters work on it.
   std::shared_ptr<const pipeline::RawImage> image;
   GpuFeatures features;
   FunctionalConfig functional;
 };
 
-/// A parameter of a technique, all numeric or one of named choices.
-struct ParameterInfo {
-  std::string_view name;
-  double default_value = 0.0, min = 0.0, max = 0.0;
-  std::string_view description;
-  std::string_view choices = "";  ///< "stencil|compute": the value is the index; empty for numbers
-};
-using Parameters = std::map<std::string, double, std::less<>>;
-
 enum class TechniqueKind { base, modifier, filter };
 
 /// One entry of the registry. Which function it has makes its kind: a base builds the frame, a modifier
 /// changes what bases are asked for (before them), a filter appends passes that take the frame's image (after
-/// them).
+/// them). Made by base_technique, modifier_technique or filter_technique.
 struct TechniqueInfo {
   std::string_view id;  ///< "msaa4x"
   std::string_view description;
-  std::span<const ParameterInfo> parameters;
-  pipeline::FrameGraph (*build)(const FrameRequest& request, const Parameters& parameters) = nullptr;
-  void (*modify)(FrameRequest& request, const Parameters& parameters) = nullptr;
-  /// Returns the filtered image; both hold sRGB codes, one sample a pixel (post_filters.h).
-  pipeline::ImageId (*filter)(pipeline::FrameGraph& graph, pipeline::ImageId input,
-                              const Parameters& parameters) = nullptr;
+  Options defaults{NoOptions{}};
+  std::vector<OptionInfo> options = {};  ///< of `defaults`, in the order in which users see them
+  std::function<pipeline::FrameGraph(const FrameRequest& request, const Options& options)> build = nullptr;
+  std::function<void(FrameRequest& request, const Options& options)> modify = nullptr;
+  /// Returns the filtered image; both hold sRGB codes, one sample a pixel (filters/filters.h).
+  std::function<pipeline::ImageId(pipeline::FrameGraph& graph, pipeline::ImageId input,
+                                  const Options& options)>
+      filter = nullptr;
   /// Why it cannot go with another technique; empty: it can.
   std::string_view (*refuses)(const TechniqueInfo& other) = nullptr;
+  /// What a user should know of a frame that it made: notes and warnings with a code and a message, without
+  /// the technique's name. None: nothing ever.
+  std::function<std::vector<Diagnostic>(const Options& options, const WorkTrace& trace)> notes = nullptr;
 
-  TechniqueKind kind() const {
-    return build != nullptr    ? TechniqueKind::base
-           : modify != nullptr ? TechniqueKind::modifier
-                               : TechniqueKind::filter;
+  bool has_option(std::string_view name) const {
+    return std::ranges::any_of(options, [&](const OptionInfo& option) { return option.name == name; });
   }
+  TechniqueKind kind() const {
+    return build ? TechniqueKind::base : modify ? TechniqueKind::modifier : TechniqueKind::filter;
+  }
+};
+
+/// Entries whose functions take the technique's own struct of options.
+template <class Struct>
+TechniqueInfo base_technique(std::string_view id, std::string_view description,
+                             pipeline::FrameGraph (*build)(const FrameRequest&, const Struct&),
+                             Struct defaults = {}) {
+  TechniqueInfo info{id, description, Options(defaults)};
+  info.options = info.defaults.infos();
+  info.build = [build](const FrameRequest& request, const Options& options) {
+    return build(request, options.as<Struct>());
+  };
+  return info;
+}
+template <class Struct>
+TechniqueInfo modifier_technique(std::string_view id, std::string_view description,
+                                 void (*modify)(FrameRequest&, const Struct&), Struct defaults = {}) {
+  TechniqueInfo info{id, description, Options(defaults)};
+  info.options = info.defaults.infos();
+  info.modify = [modify](FrameRequest& request, const Options& options) {
+    modify(request, options.as<Struct>());
+  };
+  return info;
+}
+template <class Struct>
+TechniqueInfo filter_technique(std::string_view id, std::string_view description,
+                               pipeline::ImageId (*filter)(pipeline::FrameGraph&, pipeline::ImageId,
+                                                           const Struct&),
+                               Struct defaults = {}) {
+  TechniqueInfo info{id, description, Options(defaults)};
+  info.options = info.defaults.infos();
+  info.filter = [filter](pipeline::FrameGraph& graph, pipeline::ImageId input, const Options& options) {
+    return filter(graph, input, options.as<Struct>());
+  };
+  return info;
+}
+
+/// The entry, with notes.
+template <class Struct>
+TechniqueInfo with_notes(TechniqueInfo info,
+                         std::vector<Diagnostic> (*notes)(const Struct&, const WorkTrace&)) {
+  info.notes = [notes](const Options& options, const WorkTrace& trace) {
+    return notes(options.as<Struct>(), trace);
+  };
+  return info;
+}
+
+/// The explanation of a note's code, as `hwsim help T101` prints it.
+struct MessageCode {
+  std::string_view code, title, explanation;
+};
+
+/// What a room (a folder below algos/) adds to the program. The registry lists the rooms.
+struct Room {
+  std::vector<TechniqueInfo> techniques = {};
+  std::span<const DeclaredCounter> counters = {};
+  std::span<const CounterLaw> laws = {};      ///< of these counters, in every pass
+  std::vector<TechniqueCounter> shaded = {};  ///< those that count into a frame's shaded samples
+  std::span<const MessageCode> codes = {};
 };
 
 }  // namespace hwsim::algos

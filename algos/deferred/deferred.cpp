@@ -1,12 +1,11 @@
 #include "algos/deferred/deferred.h"
 
 #include <algorithm>
-#include <array>
 
 #include "algos/base/frame_parts.h"
-#include "algos/base/shaders/deferred.h"
 #include "algos/base/shaders/post.h"
-#include "pipeline/shade/mesh_vertex.h"
+#include "algos/deferred/options.h"
+#include "algos/deferred/shaders/programs.h"
 #include "pipeline/state/sample_pattern.h"
 
 namespace hwsim::algos {
@@ -21,11 +20,11 @@ struct GBuffer {
   bool centroid = true, alpha_to_coverage = false;
 };
 
-GBuffer add_gbuffer(FrameGraph& graph, const Parameters& parameters) {
+GBuffer add_gbuffer(FrameGraph& graph, const DeferredOptions& options) {
   GBuffer g;
-  g.layout = &gbuffer_layouts()[static_cast<std::size_t>(parameters.find("layout")->second)];
-  g.samples = static_cast<int>(parameters.find("samples")->second);
-  g.centroid = parameters.find("centroid")->second != 0;
+  g.layout = &gbuffer_layouts()[static_cast<std::size_t>(options.layout)];
+  g.samples = options.samples;
+  g.centroid = options.centroid;
   const auto image = [&](std::string_view name, Format format) {
     return graph.add_image({std::string(name), format, graph.width(), graph.height(), g.samples});
   };
@@ -38,15 +37,11 @@ GBuffer add_gbuffer(FrameGraph& graph, const Parameters& parameters) {
 
 DrawBatch gbuffer_batch(const FrameParts& parts, const GBuffer& g, const std::vector<DrawCall>& draws,
                         bool alpha_test) {
-  DrawBatch batch;
-  batch.state = opaque_state({});
+  DrawBatch batch = mesh_batch(parts, draws, surface_vertex_program(parts));
   batch.state.raster.centroid = g.centroid;
-  batch.vertex = parts.full_varyings ? &mesh_full_program() : &mesh_surface_program();
-  batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{parts.clip_from_world});
   batch.fragment = &gbuffer_program(g.layout->encoding, parts.full_varyings, alpha_test);
   batch.fragment_uniforms =
       std::make_shared<GBufferUniforms>(GBufferUniforms{parts.camera.view_from_world, parts.full_varyings});
-  batch.draws = draws;
   return batch;
 }
 
@@ -78,9 +73,8 @@ std::shared_ptr<DeferredUniforms> make_uniforms(const FrameGraph& graph, const F
   auto u = std::make_shared<DeferredUniforms>();
   u->lighting = parts.lighting;
   if (parts.shadow_map) u->lighting.shadow_slot = static_cast<int>(lighting_inputs(g).size());
-  const float aspect = static_cast<float>(graph.width()) / static_cast<float>(graph.height());
   u->world_from_clip = glm::inverse(parts.clip_from_world);
-  u->view_from_clip = glm::inverse(clip_from_view(parts.camera, aspect));
+  u->view_from_clip = parts.view_from_clip;
   u->view_from_world = parts.camera.view_from_world;
   u->background = graph.scene().background;
   u->width = graph.width();
@@ -133,15 +127,11 @@ void add_classify_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer
 /// With layout=gb_lauritzen that makes the 40 bytes a sample of SBAA's reference (techniques 3.6 b).
 void add_tile_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
                    std::shared_ptr<const void> uniforms) {
-  Pass& pass = graph.add_pass("light_tiles", PassKind::compute);
-  const ComputeProgram& program = tile_light_program(g.layout->encoding);
-  pass.compute = &program;
-  pass.groups_x = (graph.width() + program.group_width - 1) / program.group_width;
-  pass.groups_y = (graph.height() + program.group_height - 1) / program.group_height;
   const ImageId samples =
       graph.add_image({"lit_samples", g.layout->lit, graph.width(), graph.height(), g.samples});
+  Pass& pass =
+      add_frame_compute(graph, "light_tiles", tile_light_program(g.layout->encoding), std::move(uniforms));
   pass.targets = {samples};
-  pass.uniforms = std::move(uniforms);
   bind_gbuffer(pass, parts, g);
   Pass& copy = graph.add_pass("copy_lit", PassKind::full_screen);
   copy.samples = g.samples;
@@ -159,7 +149,7 @@ void finish(FrameGraph& graph, const FrameParts& parts, const GBuffer& g) {
   target.width = graph.width();
   target.height = graph.height();
   target.samples = g.samples;
-  add_blended(graph, parts, "blended", target);
+  add_blended(graph, parts, "", target);
   const ImageId output = add_output(graph);
   if (g.samples > 1) {
     graph.add_resolve("resolve", g.lit, output);
@@ -178,10 +168,10 @@ void check_alpha_to_coverage(const GBuffer& g) {
   throw InputError(std::move(error), ExitStatus::usage);
 }
 
-FrameGraph build_deferred(const FrameRequest& request, const Parameters& parameters) {
+FrameGraph build_deferred(const FrameRequest& request, const DeferredOptions& options) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
-  const GBuffer g = add_gbuffer(graph, parameters);
+  const GBuffer g = add_gbuffer(graph, options);
   add_gbuffer_pass(graph, parts, g);
   Pass& light = add_light_pass(graph, parts, g, "light", make_uniforms(graph, parts, g));
   light.state.raster.sample_rate = g.samples > 1;
@@ -189,18 +179,18 @@ FrameGraph build_deferred(const FrameRequest& request, const Parameters& paramet
   return graph;
 }
 
-FrameGraph build_simple_complex(const FrameRequest& request, const Parameters& parameters) {
+FrameGraph build_simple_complex(const FrameRequest& request, const SimpleComplexOptions& options) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
-  GBuffer g = add_gbuffer(graph, parameters);
-  g.alpha_to_coverage = parameters.find("alpha_to_coverage")->second != 0;
+  GBuffer g = add_gbuffer(graph, options.gbuffer);
+  g.alpha_to_coverage = options.alpha_to_coverage;
   check_alpha_to_coverage(g);
   add_gbuffer_pass(graph, parts, g);
   const auto uniforms = make_uniforms(graph, parts, g);
-  uniforms->normal_dot_min = static_cast<float>(parameters.find("normal_dot_min")->second);
-  uniforms->z_scale = static_cast<float>(parameters.find("z_scale")->second);
-  uniforms->compare_all = parameters.find("compare_all")->second != 0;
-  if (parameters.find("lighting")->second != 0) {
+  uniforms->normal_dot_min = static_cast<float>(options.normal_dot_min);
+  uniforms->z_scale = static_cast<float>(options.z_scale);
+  uniforms->compare_all = options.compare_all;
+  if (options.lighting == DeferredLighting::compute_tiles) {
     add_tile_pass(graph, parts, g, uniforms);
   } else {
     add_classify_pass(graph, parts, g, uniforms);
@@ -213,29 +203,35 @@ FrameGraph build_simple_complex(const FrameRequest& request, const Parameters& p
   return graph;
 }
 
-constexpr ParameterInfo kLayout{"layout", 0, 0, 3, "what the G-buffer holds of a sample", kLayoutChoices};
-constexpr std::array<ParameterInfo, 3> kDeferred = {
-    ParameterInfo{"samples", 8, 1, 32, "samples a pixel: a power of two"}, kLayout, kCentroid};
-constexpr std::array<ParameterInfo, 8> kSimpleComplex = {
-    ParameterInfo{"samples", 8, 2, 32, "samples a pixel: a power of two"},
-    kLayout,
-    kCentroid,
-    ParameterInfo{"lighting", 0, 0, 1, "full-screen passes with stencil, or 16x16 compute tiles",
-                  "stencil|compute"},
-    ParameterInfo{"normal_dot_min", 0.99, 0, 1, "normals further apart make a pixel complex (cosine)"},
-    ParameterInfo{"z_scale", 1, 0, 1000, "depth steps beyond this many slopes of a pixel make it complex"},
-    ParameterInfo{"compare_all", 0, 0, 1, "differing materials make a pixel complex, too", "off|on"},
-    ParameterInfo{"alpha_to_coverage", 0, 0, 1, "alpha is coverage, not a test; with layout=gb_agaa16",
-                  "off|on"}};
-
-constexpr TechniqueInfo kTechniques[] = {
-    {"deferred", "multisampled G-buffer, every sample lit", kDeferred, build_deferred},
-    {"deferred_simple_complex", "multisampled G-buffer, samples lit only where they differ (Lauritzen 2010)",
-     kSimpleComplex, build_simple_complex},
-};
+void describe_gbuffer(OptionList& list, DeferredOptions& o, int least_samples) {
+  list.whole("samples", o.samples, {least_samples, 32}, "samples a pixel: a power of two");
+  list.choice("layout", o.layout, kLayoutChoices, "what the G-buffer holds of a sample");
+  describe_centroid(list, o.centroid);
+}
 
 }  // namespace
 
-std::span<const TechniqueInfo> deferred_techniques() { return kTechniques; }
+void describe(OptionList& list, DeferredOptions& o) { describe_gbuffer(list, o, 1); }
+
+void describe(OptionList& list, SimpleComplexOptions& o) {
+  describe_gbuffer(list, o.gbuffer, 2);
+  list.choice("lighting", o.lighting, "stencil|compute",
+              "full-screen passes with stencil, or 16x16 compute tiles");
+  list.real("normal_dot_min", o.normal_dot_min, {0, 1},
+            "normals further apart make a pixel complex (cosine)");
+  list.real("z_scale", o.z_scale, {0, 1000},
+            "depth steps beyond this many slopes of a pixel make it complex");
+  list.choice("compare_all", o.compare_all, "off|on", "differing materials make a pixel complex, too");
+  list.choice("alpha_to_coverage", o.alpha_to_coverage, "off|on",
+              "alpha is coverage, not a test; with layout=gb_agaa16");
+}
+
+Room deferred_room() {
+  return {.techniques = {
+              base_technique("deferred", "multisampled G-buffer, every sample lit", build_deferred),
+              base_technique("deferred_simple_complex",
+                             "multisampled G-buffer, samples lit only where they differ (Lauritzen 2010)",
+                             build_simple_complex)}};
+}
 
 }  // namespace hwsim::algos

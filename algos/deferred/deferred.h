@@ -1,9 +1,10 @@
 #pragma once
-// Deferred shading of multisampled G-buffers (techniques 2).
+// Deferred shading of a multisampled G-buffer (techniques 2): every sample lit, or samples only where they
+// differ.
 #include "algos/base/technique.h"
 
 namespace hwsim::algos {
 
-std::span<const TechniqueInfo> deferred_techniques();
+Room deferred_room();
 
 }  // namespace hwsim::algos

@@ -2,11 +2,22 @@
 // place.
 #include "algos/filters/shaders/cmaa.h"
 #include "algos/base/frame_parts.h"
-#include "algos/filters/post_filters.h"
+#include "algos/filters/filters.h"
 
 namespace hwsim::algos {
 namespace {
 using namespace pipeline;
+
+struct CmaaOptions {
+  double threshold = 1.0 / 13.0;
+  bool average_quirk = true;
+};
+
+void describe(OptionList& list, CmaaOptions& o) {
+  list.real("threshold", o.threshold, {0.04, 0.125}, "color difference that makes an edge, weighted by luma");
+  list.choice("cmaa_avg_quirk", o.average_quirk, "off|on",
+              "pruning takes the mean of four neighbors, as the public port does");
+}
 
 /// A pass over quads of the image: as many invocations as quads.
 Pass& add_quads(FrameGraph& graph, const char* name, ImageId mask, const FragmentProgram& program,
@@ -24,12 +35,10 @@ Pass& add_quads(FrameGraph& graph, const char* name, ImageId mask, const Fragmen
   return pass;
 }
 
-}  // namespace
-
-ImageId add_cmaa(FrameGraph& graph, ImageId input, const Parameters& parameters) {
+ImageId add_cmaa(FrameGraph& graph, ImageId input, const CmaaOptions& options) {
   CmaaUniforms u;
-  u.threshold = static_cast<float>(parameters.find("threshold")->second);
-  u.average_quirk = parameters.find("cmaa_avg_quirk")->second != 0;
+  u.threshold = static_cast<float>(options.threshold);
+  u.average_quirk = options.average_quirk;
   const auto uniforms = std::make_shared<const CmaaUniforms>(u);
   const int width = graph.width(), height = graph.height();
   const int quads_x = (width + 1) / 2, quads_y = (height + 1) / 2;
@@ -57,6 +66,12 @@ ImageId add_cmaa(FrameGraph& graph, ImageId input, const Parameters& parameters)
   blend.targets = {input, input};  // lines over simple shapes
   blend.target_views = {Format::rgba8_unorm, Format::rgba8_unorm};
   return input;
+}
+
+}  // namespace
+
+TechniqueInfo cmaa_filter() {
+  return filter_technique("cmaa", "CMAA: locally dominant edges, corners and long steps, in place", add_cmaa);
 }
 
 }  // namespace hwsim::algos

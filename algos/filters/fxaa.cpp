@@ -4,7 +4,7 @@
 #include <span>
 
 #include "algos/base/frame_parts.h"
-#include "algos/filters/post_filters.h"
+#include "algos/filters/filters.h"
 
 namespace hwsim::algos {
 namespace {
@@ -39,17 +39,21 @@ ImageId add_perceptual(FrameGraph& graph, const std::string& name) {
   return graph.add_image({name, Format::rgba8_unorm, graph.width(), graph.height(), 1});
 }
 
+ImageId add_fxaa(FrameGraph& graph, ImageId input, const FxaaOptions& options) {
+  return add_fxaa_passes(graph, input, "fxaa", fxaa_uniforms(options), options.discard);
+}
+
 }  // namespace
 
-FxaaUniforms fxaa_uniforms(const Parameters& parameters) {
-  const Preset& preset = kPresets.at(static_cast<std::size_t>(parameters.find("preset")->second));
+FxaaUniforms fxaa_uniforms(const FxaaOptions& options) {
+  const Preset& preset = kPresets.at(static_cast<std::size_t>(options.preset));
   FxaaUniforms u;
   u.steps = preset.steps;
   u.step_px = preset.step_px;
-  u.subpix = static_cast<float>(parameters.find("subpix")->second);
-  u.edge_threshold = static_cast<float>(parameters.find("edge_threshold")->second);
-  u.edge_threshold_min = static_cast<float>(parameters.find("edge_threshold_min")->second);
-  u.green_as_luma = parameters.find("green_as_luma")->second != 0;
+  u.subpix = static_cast<float>(options.subpix);
+  u.edge_threshold = static_cast<float>(options.edge_threshold);
+  u.edge_threshold_min = static_cast<float>(options.edge_threshold_min);
+  u.green_as_luma = options.green_as_luma;
   return u;
 }
 
@@ -73,9 +77,21 @@ ImageId add_fxaa_passes(FrameGraph& graph, ImageId input, const std::string& nam
   return output;
 }
 
-ImageId add_fxaa(FrameGraph& graph, ImageId input, const Parameters& parameters) {
-  return add_fxaa_passes(graph, input, "fxaa", fxaa_uniforms(parameters),
-                         parameters.find("discard")->second != 0);
+void describe(OptionList& list, FxaaOptions& o) {
+  list.choice("preset", o.preset, "10|11|12|13|14|15|20|21|22|23|24|25|26|27|28|29|39",
+              "steps of the search along edges");
+  list.real("subpix", o.subpix, {0, 1}, "blur of details that are smaller than a pixel");
+  list.real("edge_threshold", o.edge_threshold, {0.01, 1},
+            "contrast of an edge, as a part of the highest luma");
+  list.real("edge_threshold_min", o.edge_threshold_min, {0, 1},
+            "least contrast of an edge: darkness is not filtered");
+  list.choice("green_as_luma", o.green_as_luma, "off|on", "no pass that writes luma: green stands for it");
+  list.choice("discard", o.discard, "off|on",
+              "edges are drawn onto a copy of the image, other pixels discarded");
+}
+
+TechniqueInfo fxaa_filter() {
+  return filter_technique("fxaa", "FXAA 3.11 Quality: blends along edges found by luma", add_fxaa);
 }
 
 }  // namespace hwsim::algos

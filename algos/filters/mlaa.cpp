@@ -1,15 +1,27 @@
 // MLAA on a GPU: edges, lengths of their runs, blending (techniques 7.5).
 #include "algos/filters/shaders/mlaa.h"
 #include "algos/base/frame_parts.h"
-#include "algos/filters/post_filters.h"
+#include "algos/filters/filters.h"
 
 namespace hwsim::algos {
+namespace {
 using namespace pipeline;
 
-ImageId add_mlaa(FrameGraph& graph, ImageId input, const Parameters& parameters) {
+struct MlaaOptions {
+  double threshold = 0.03125;
+  int count_bits = 4;
+};
+
+void describe(OptionList& list, MlaaOptions& o) {
+  list.real("threshold", o.threshold, {0.01, 0.5}, "contrast of luma that makes an edge");
+  list.choice("count_bits", o.count_bits, "4|8", std::array{4, 8},
+              "bits of a run's length with its stop bit: up to 7 pixels, or 127");
+}
+
+ImageId add_mlaa(FrameGraph& graph, ImageId input, const MlaaOptions& options) {
   MlaaUniforms u;
-  u.threshold = static_cast<float>(parameters.find("threshold")->second);
-  u.wide_counts = parameters.find("count_bits")->second != 0;
+  u.threshold = static_cast<float>(options.threshold);
+  u.wide_counts = options.count_bits == 8;
   const auto uniforms = std::make_shared<MlaaUniforms>(u);
   const auto image = [&](const char* name, Format format) {
     return graph.add_image({name, format, graph.width(), graph.height(), 1});
@@ -23,6 +35,12 @@ ImageId add_mlaa(FrameGraph& graph, ImageId input, const Parameters& parameters)
   add_full_screen(graph, "mlaa_blend", {input, edges, counts}, output, mlaa_blend_program(), uniforms)
       .views = {Format::rgba8_unorm};
   return output;
+}
+
+}  // namespace
+
+TechniqueInfo mlaa_filter() {
+  return filter_technique("mlaa", "MLAA: runs of edges, re-vectorized by the colors at their ends", add_mlaa);
 }
 
 }  // namespace hwsim::algos

@@ -2,13 +2,25 @@
 #include <array>
 
 #include "algos/base/frame_parts.h"
-#include "algos/filters/post_filters.h"
+#include "algos/filters/filters.h"
 #include "algos/filters/shaders/smaa.h"
 #include "algos/filters/smaa_tables.h"
 
 namespace hwsim::algos {
 namespace {
 using namespace pipeline;
+
+enum class SmaaPreset : std::uint8_t { low, medium, high, ultra };
+enum class SmaaEdges : std::uint8_t { luma, color };
+struct SmaaOptions {
+  SmaaPreset preset = SmaaPreset::high;
+  SmaaEdges edges = SmaaEdges::luma;
+};
+
+void describe(OptionList& list, SmaaOptions& o) {
+  list.choice("preset", o.preset, "low|medium|high|ultra", "threshold, search steps, diagonals and corners");
+  list.choice("edges", o.edges, "luma|color", "contrast of luma, or the largest of the channels");
+}
 
 struct Preset {
   float threshold;
@@ -29,13 +41,11 @@ void select_edges(Pass& pass, ImageId stencil, bool mark) {
     pass.state.stencil.compare = Compare::equal;
 }
 
-}  // namespace
-
-ImageId add_smaa(FrameGraph& graph, ImageId input, const Parameters& parameters) {
-  const Preset& preset = kPresets.at(static_cast<std::size_t>(parameters.find("preset")->second));
+ImageId add_smaa(FrameGraph& graph, ImageId input, const SmaaOptions& options) {
+  const Preset& preset = kPresets.at(static_cast<std::size_t>(options.preset));
   SmaaUniforms u;
   u.threshold = preset.threshold;
-  u.color_edges = parameters.find("edges")->second != 0;
+  u.color_edges = options.edges == SmaaEdges::color;
   u.search_steps = preset.search_steps;
   if (preset.diagonal_steps > 0) u.diagonal_steps = preset.diagonal_steps;
   u.corners = preset.corner_rounding_pct >= 0;
@@ -65,6 +75,12 @@ ImageId add_smaa(FrameGraph& graph, ImageId input, const Parameters& parameters)
       add_full_screen(graph, "smaa_blend", {weights, input}, output, smaa_blend_program(), uniforms);
   blend.views = {Format::none, Format::rgba8_srgb};
   return output;
+}
+
+}  // namespace
+
+TechniqueInfo smaa_filter() {
+  return filter_technique("smaa", "SMAA 1x: edges re-vectorized, diagonals and corners included", add_smaa);
 }
 
 }  // namespace hwsim::algos

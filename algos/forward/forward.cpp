@@ -1,10 +1,10 @@
 #include "algos/forward/forward.h"
 
-#include <array>
 #include <cmath>
 
 #include "algos/base/frame_parts.h"
 #include "algos/base/shaders/post.h"
+#include "algos/forward/options.h"
 #include "pipeline/state/sample_pattern.h"
 
 namespace hwsim::algos {
@@ -68,7 +68,7 @@ struct CoverageMode {
   int samples, coverage_samples;
 };
 
-FrameGraph build_coverage(const FrameRequest& request, const Parameters& parameters, CoverageMode mode) {
+FrameGraph build_coverage(const FrameRequest& request, const CoverageOptions& options, CoverageMode mode) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
   ForwardTarget target;
@@ -76,8 +76,8 @@ FrameGraph build_coverage(const FrameRequest& request, const Parameters& paramet
   target.height = graph.height();
   target.samples = mode.samples;
   target.coverage_samples = mode.coverage_samples > mode.samples ? mode.coverage_samples : 0;
-  target.centroid = parameters.find("centroid")->second != 0;
-  target.drop_orphans = parameters.find("orphans")->second != 0;
+  target.centroid = options.centroid;
+  target.drop_orphans = options.orphans == OrphanPositions::drop;
   target.color = graph.add_image({"multisampled_color", Format::rgba8_srgb, target.width, target.height,
                                   target.samples, 1, target.coverage_samples});
   target.depth = graph.add_image(
@@ -87,11 +87,7 @@ FrameGraph build_coverage(const FrameRequest& request, const Parameters& paramet
   return graph;
 }
 
-int integer(const Parameters& parameters, std::string_view name) {
-  return static_cast<int>(parameters.find(name)->second);
-}
-
-FrameGraph build_none(const FrameRequest& request, const Parameters&) {
+FrameGraph build_none(const FrameRequest& request, const NoOptions&) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
   ForwardTarget target;
@@ -103,98 +99,111 @@ FrameGraph build_none(const FrameRequest& request, const Parameters&) {
   return graph;
 }
 
-FrameGraph build_ssaa(const FrameRequest& request, const Parameters& parameters) {
+FrameGraph build_ssaa(const FrameRequest& request, const SsaaOptions& options) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
-  const int samples = integer(parameters, "samples");
-  const int factor = static_cast<int>(std::lround(std::sqrt(samples)));
-  switch (integer(parameters, "variant")) {
-    case 0:
+  const int factor = static_cast<int>(std::lround(std::sqrt(options.samples)));
+  switch (options.variant) {
+    case SsaaVariant::ordered:
       build_ordered(graph, parts, factor);
       break;
-    case 1:
+    case SsaaVariant::accumulate:
       build_accumulated(graph, parts, factor);
       break;
-    default:
-      build_multisampled(graph, parts, samples, false, true);
+    case SsaaVariant::sample_rate:
+      build_multisampled(graph, parts, options.samples, false, true);
       break;
   }
   return graph;
 }
 
-FrameGraph build_msaa(const FrameRequest& request, const Parameters& parameters) {
+FrameGraph build_layers(const FrameRequest& request, const MsaaOptions& options,
+                        const MulticastPattern& layers) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
-  const int samples = integer(parameters, "samples");
-  const bool centroid = integer(parameters, "centroid") != 0;
-  const auto emulate = parameters.find("emulate");
-  const MulticastPattern layers = emulate == parameters.end()
-                                      ? MulticastPattern{}
-                                      : multicast_layers(request, samples, static_cast<int>(emulate->second));
   if (layers.viewports.empty())
-    build_multisampled(graph, parts, samples, centroid, false);
+    build_multisampled(graph, parts, options.samples, options.centroid, false);
   else
-    build_multicast(graph, parts, samples, centroid, layers);
+    build_multicast(graph, parts, options.samples, options.centroid, layers);
   return graph;
 }
 
-constexpr CoverageMode kCsaaModes[] = {{4, 8}, {8, 8}, {4, 16}, {8, 16}};
-FrameGraph build_csaa(const FrameRequest& request, const Parameters& parameters) {
-  return build_coverage(request, parameters, kCsaaModes[integer(parameters, "mode")]);
+FrameGraph build_msaa(const FrameRequest& request, const MsaaOptions& options) {
+  return build_layers(request, options, {});
 }
-constexpr CoverageMode kEqaaModes[] = {{2, 4}, {4, 8}, {8, 16}};
-FrameGraph build_eqaa(const FrameRequest& request, const Parameters& parameters) {
-  return build_coverage(request, parameters, kEqaaModes[integer(parameters, "mode")]);
+FrameGraph build_many_samples(const FrameRequest& request, const ManySamplesOptions& options) {
+  return build_layers(request, options.msaa,
+                      multicast_layers(request, options.msaa.samples, options.emulate));
 }
 
-constexpr ParameterInfo kVariant{"variant",
-                                 0,
-                                 0,
-                                 2,
-                                 "one large image, jittered frames, or sample-rate shading",
-                                 "ordered|accumulate|sample_rate"};
-constexpr std::array<ParameterInfo, 2> msaa(double samples) {
-  return {ParameterInfo{"samples", samples, samples, samples, "samples a pixel"}, kCentroid};
+FrameGraph build_csaa(const FrameRequest& request, const CsaaOptions& options) {
+  constexpr CoverageMode kModes[] = {{4, 8}, {8, 8}, {4, 16}, {8, 16}};  // of CsaaMode
+  return build_coverage(request, options.coverage, kModes[static_cast<std::size_t>(options.mode)]);
 }
-constexpr std::array<ParameterInfo, 3> msaa_beyond_8(double samples) {
-  return {ParameterInfo{"samples", samples, samples, samples, "samples a pixel"}, kCentroid,
-          ParameterInfo{"emulate", 0, 0, 2, "layers of 8 samples, by viewport multicast, or native samples",
-                        kEmulateChoices}};
+FrameGraph build_eqaa(const FrameRequest& request, const EqaaOptions& options) {
+  constexpr CoverageMode kModes[] = {{2, 4}, {4, 8}, {8, 16}};  // of EqaaMode
+  return build_coverage(request, options.coverage, kModes[static_cast<std::size_t>(options.mode)]);
 }
-constexpr std::array<ParameterInfo, 2> ssaa(double samples) {
-  return {ParameterInfo{"samples", samples, samples, samples, "shaded samples a pixel"}, kVariant};
-}
-constexpr std::array<ParameterInfo, 3> coverage(double mode, double modes, std::string_view description,
-                                                std::string_view choices) {
-  return {ParameterInfo{"mode", mode, 0, modes - 1, description, choices}, kCentroid,
-          ParameterInfo{"orphans", 0, 0, 1,
-                        "positions whose sample was overwritten: another of the same fragment, or none",
-                        "follow|drop"}};
-}
-constexpr auto kCsaa =
-    coverage(2, 4, "color and coverage samples: 4/8, 8/8, 4/16 or 8/16", "8x|8xq|16x|16xq");
-constexpr auto kEqaa = coverage(1, 3, "color and coverage samples", "2f4x|4f8x|8f16x");
-constexpr auto kMsaa2 = msaa(2), kMsaa4 = msaa(4), kMsaa8 = msaa(8);
-constexpr auto kMsaa16 = msaa_beyond_8(16), kMsaa32 = msaa_beyond_8(32);
-constexpr auto kSsaa4 = ssaa(4), kSsaa16 = ssaa(16), kSsaa64 = ssaa(64);
 
-constexpr TechniqueInfo kTechniques[] = {
-    {"none", "one sample a pixel, forward shading", {}, build_none},
-    {"ssaa4x", "supersampling, 2x2", kSsaa4, build_ssaa},
-    {"ssaa16x", "supersampling, 4x4", kSsaa16, build_ssaa},
-    {"ssaa64x", "supersampling, 8x8", kSsaa64, build_ssaa},
-    {"msaa2x", "multisampling, hardware resolve", kMsaa2, build_msaa},
-    {"msaa4x", "multisampling, hardware resolve", kMsaa4, build_msaa},
-    {"msaa8x", "multisampling, hardware resolve", kMsaa8, build_msaa},
-    {"msaa16x", "multisampling, native or as two shifted layers of 8 samples", kMsaa16, build_msaa},
-    {"msaa32x", "multisampling, native or as four shifted layers of 8 samples", kMsaa32, build_msaa},
-    {"csaa", "coverage sampling: fewer color and depth samples than positions of coverage", kCsaa,
-     build_csaa},
-    {"eqaa", "enhanced quality: coverage sampling by its other name and modes", kEqaa, build_eqaa},
-};
+void describe_coverage(OptionList& list, CoverageOptions& o) {
+  describe_centroid(list, o.centroid);
+  list.choice("orphans", o.orphans, "follow|drop",
+              "positions whose sample was overwritten: another of the same fragment, or none");
+}
+
+MsaaOptions samples(int count) { return {.samples = count}; }
 
 }  // namespace
 
-std::span<const TechniqueInfo> forward_techniques() { return kTechniques; }
+void describe(OptionList& list, SsaaOptions& o) {
+  list.fixed("samples", o.samples, "shaded samples a pixel");
+  list.choice("variant", o.variant, "ordered|accumulate|sample_rate",
+              "one large image, jittered frames, or sample-rate shading");
+}
+
+void describe(OptionList& list, MsaaOptions& o) {
+  list.fixed("samples", o.samples, "samples a pixel");
+  describe_centroid(list, o.centroid);
+}
+
+void describe(OptionList& list, ManySamplesOptions& o) {
+  describe(list, o.msaa);
+  list.choice("emulate", o.emulate, kEmulateChoices,
+              "layers of 8 samples, by viewport multicast, or native samples");
+}
+
+void describe(OptionList& list, CsaaOptions& o) {
+  list.choice("mode", o.mode, "8x|8xq|16x|16xq", "color and coverage samples: 4/8, 8/8, 4/16 or 8/16");
+  describe_coverage(list, o.coverage);
+}
+
+void describe(OptionList& list, EqaaOptions& o) {
+  list.choice("mode", o.mode, "2f4x|4f8x|8f16x", "color and coverage samples");
+  describe_coverage(list, o.coverage);
+}
+
+Room forward_room() {
+  const std::string_view native = "multisampling, hardware resolve";
+  return {
+      .techniques = {base_technique("none", "one sample a pixel, forward shading", build_none),
+                     base_technique("ssaa4x", "supersampling, 2x2", build_ssaa, {.samples = 4}),
+                     base_technique("ssaa16x", "supersampling, 4x4", build_ssaa, {.samples = 16}),
+                     base_technique("ssaa64x", "supersampling, 8x8", build_ssaa, {.samples = 64}),
+                     base_technique("msaa2x", native, build_msaa, samples(2)),
+                     base_technique("msaa4x", native, build_msaa, samples(4)),
+                     base_technique("msaa8x", native, build_msaa, samples(8)),
+                     base_technique("msaa16x", "multisampling, native or as two shifted layers of 8 samples",
+                                    build_many_samples, {.msaa = samples(16)}),
+                     base_technique("msaa32x", "multisampling, native or as four shifted layers of 8 samples",
+                                    build_many_samples, {.msaa = samples(32)}),
+                     base_technique(
+                         "csaa",
+                         "coverage sampling: fewer color and depth samples than positions of coverage",
+                         build_csaa),
+                     base_technique("eqaa", "enhanced quality: coverage sampling by its other name and modes",
+                                    build_eqaa)},
+      .counters = BaseCounters::kDeclared,
+      .shaded = {BaseCounters::lit_samples}};
+}
 
 }  // namespace hwsim::algos

@@ -1,9 +1,10 @@
 #pragma once
-// No anti-aliasing, supersampling and multisampling: forward shading (techniques 1.1 to 1.3).
+// Techniques that shade while they draw: no anti-aliasing, supersampling, multisampling and coverage
+// sampling.
 #include "algos/base/technique.h"
 
 namespace hwsim::algos {
 
-std::span<const TechniqueInfo> forward_techniques();
+Room forward_room();
 
 }  // namespace hwsim::algos

@@ -1,10 +1,9 @@
 #include "algos/sbaa/sbaa.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "algos/base/frame_parts.h"
+#include "algos/sbaa/options.h"
 #include "algos/sbaa/shaders/programs.h"
 #include "pipeline/shade/mesh_vertex.h"
 
@@ -12,7 +11,8 @@ namespace hwsim::algos {
 namespace {
 using namespace pipeline;
 
-struct SbaaOptions {
+/// What follows from the options.
+struct Setup {
   int samples = 8;
   int slots = 2;
   int id_bits = 7;
@@ -27,16 +27,14 @@ struct SbaaOptions {
   bool merges() const { return sample != SbaaSample::id; }
 };
 
-double value(const Parameters& parameters, std::string_view name) { return parameters.find(name)->second; }
-
-SbaaOptions read_options(const Parameters& parameters) {
-  SbaaOptions o;
-  o.samples = static_cast<int>(value(parameters, "msaa"));
-  o.slots = static_cast<int>(value(parameters, "n"));
-  o.id_bits = static_cast<int>(value(parameters, "id_bits"));
-  o.record_bytes = 4 * static_cast<int>(std::ceil(value(parameters, "record_bytes") / 4.0));
-  o.weigh_background = value(parameters, "background") == 0;
-  o.centroid = value(parameters, "centroid") != 0;
+Setup make_setup(const SbaaOptions& options) {
+  Setup o;
+  o.samples = options.samples;
+  o.slots = options.surfaces;
+  o.id_bits = options.id_bits;
+  o.record_bytes = 4 * ((options.record_bytes + 3) / 4);  // whole words
+  o.weigh_background = options.background == SbaaBackground::weighted;
+  o.centroid = options.centroid;
   if (o.slots > o.samples) {
     Diagnostic error;
     error.code = "T003";
@@ -61,9 +59,9 @@ struct SbaaImages {
 
 /// The paper's two bytes a surface hold 7 bits of the number and, in the first slot, the counts of surface
 /// and background in four bits each. Longer numbers and more than 8 samples need four.
-bool two_byte_surfaces(const SbaaOptions& o) { return o.id_bits < 8 && o.samples <= 8; }
+bool two_byte_surfaces(const Setup& o) { return o.id_bits < 8 && o.samples <= 8; }
 
-SbaaSurfaces describe_surfaces(const FrameGraph& graph, const SbaaOptions& o) {
+SbaaSurfaces describe_surfaces(const FrameGraph& graph, const Setup& o) {
   SbaaSurfaces s;
   s.width = graph.width();
   s.height = graph.height();
@@ -73,7 +71,7 @@ SbaaSurfaces describe_surfaces(const FrameGraph& graph, const SbaaOptions& o) {
   return s;
 }
 
-SbaaImages add_images(FrameGraph& graph, const SbaaOptions& o) {
+SbaaImages add_images(FrameGraph& graph, const Setup& o) {
   const int width = graph.width(), height = graph.height();
   SbaaImages images;
   // The format of gb_sbaa40, so that both see the same samples.
@@ -90,21 +88,18 @@ SbaaImages add_images(FrameGraph& graph, const SbaaOptions& o) {
   return images;
 }
 
-DrawBatch visibility_batch(const FrameParts& parts, const SbaaOptions& o, const std::vector<DrawCall>& draws,
+DrawBatch visibility_batch(const FrameParts& parts, const Setup& o, const std::vector<DrawCall>& draws,
                            bool alpha_test) {
-  DrawBatch batch;
-  batch.state = opaque_state({});
+  const VertexProgram& vertex = o.merges() ? (alpha_test ? mesh_normal_uv_program() : mesh_normal_program())
+                                           : (alpha_test ? mesh_uv_program() : mesh_position_program());
+  DrawBatch batch = mesh_batch(parts, draws, vertex);
   batch.state.raster.centroid = o.centroid;
-  batch.vertex = o.merges() ? (alpha_test ? &mesh_normal_uv_program() : &mesh_normal_program())
-                            : (alpha_test ? &mesh_uv_program() : &mesh_position_program());
-  batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{parts.clip_from_world});
   batch.fragment = &sbaa_id_program(o.sample, alpha_test);
   batch.fragment_uniforms = std::make_shared<SbaaIdUniforms>(SbaaIdUniforms{o.id_mask()});
-  batch.draws = draws;
   return batch;
 }
 
-void add_visibility_pass(FrameGraph& graph, const FrameParts& parts, const SbaaOptions& o,
+void add_visibility_pass(FrameGraph& graph, const FrameParts& parts, const Setup& o,
                          const SbaaImages& images) {
   std::vector<ImageId> targets = {images.id};
   if (images.normal) targets.push_back(images.normal);
@@ -119,14 +114,7 @@ void add_visibility_pass(FrameGraph& graph, const FrameParts& parts, const SbaaO
   if (!parts.draws.mask.empty()) pass.batches.push_back(visibility_batch(parts, o, parts.draws.mask, true));
 }
 
-glm::mat4 view_from_clip(const FrameGraph& graph, const FrameParts& parts) {
-  const float aspect = static_cast<float>(graph.width()) / static_cast<float>(graph.height());
-  return glm::inverse(clip_from_view(parts.camera, aspect));
-}
-
-void add_analysis_pass(FrameGraph& graph, const FrameParts& parts, const SbaaOptions& o,
-                       const SbaaImages& images) {
-  const ComputeProgram& program = sbaa_analysis_program(o.sample, o.id_bits);
+void add_analysis_pass(FrameGraph& graph, const FrameParts& parts, const Setup& o, const SbaaImages& images) {
   auto u = std::make_shared<SbaaAnalysisUniforms>();
   u->surfaces = describe_surfaces(graph, o);
   u->samples = o.samples;
@@ -134,29 +122,22 @@ void add_analysis_pass(FrameGraph& graph, const FrameParts& parts, const SbaaOpt
   u->cos_alpha = o.cos_alpha;
   u->end_region = o.end_region;
   u->linear_depth = o.linear_depth;
-  u->view_from_clip = view_from_clip(graph, parts);
-  Pass& pass = graph.add_pass("analysis", PassKind::compute);
-  pass.compute = &program;
-  pass.groups_x = (graph.width() + program.group_width - 1) / program.group_width;
-  pass.groups_y = (graph.height() + program.group_height - 1) / program.group_height;
+  u->view_from_clip = parts.view_from_clip;
+  Pass& pass = add_frame_compute(graph, "analysis", sbaa_analysis_program(o.sample, o.id_bits), std::move(u));
   pass.sampled = {images.id};
   if (images.normal) pass.sampled.push_back(images.normal);
   if (o.merges()) pass.sampled.push_back(images.depth);
   pass.targets = {images.surfaces};
   pass.storage = {images.records};
   pass.storage_written = 1;
-  pass.uniforms = std::move(u);
 }
 
-DrawBatch record_batch(const FrameGraph& graph, const FrameParts& parts, const SbaaOptions& o,
+DrawBatch record_batch(const FrameGraph& graph, const FrameParts& parts, const Setup& o,
                        const std::vector<DrawCall>& draws, bool alpha_test) {
-  DrawBatch batch;
-  batch.state = opaque_state({});
+  DrawBatch batch = mesh_batch(parts, draws, surface_vertex_program(parts));
   batch.state.raster.centroid = o.centroid;
   batch.state.depth = {true, false, Compare::equal};
   batch.state.force_early_z = true;
-  batch.vertex = parts.full_varyings ? &mesh_full_program() : &mesh_surface_program();
-  batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{parts.clip_from_world});
   batch.fragment = &sbaa_gbuffer_program(o.full_record(), parts.full_varyings, alpha_test);
   auto u = std::make_shared<SbaaGBufferUniforms>();
   u->surfaces = describe_surfaces(graph, o);
@@ -165,13 +146,11 @@ DrawBatch record_batch(const FrameGraph& graph, const FrameParts& parts, const S
   u->clip_from_world = parts.clip_from_world;
   u->view_from_world = parts.camera.view_from_world;
   batch.fragment_uniforms = std::move(u);
-  batch.draws = draws;
   return batch;
 }
 
 // The same draws in the same order as for visibility, so that primitives have the same numbers.
-void add_gbuffer_pass(FrameGraph& graph, const FrameParts& parts, const SbaaOptions& o,
-                      const SbaaImages& images) {
+void add_gbuffer_pass(FrameGraph& graph, const FrameParts& parts, const Setup& o, const SbaaImages& images) {
   Pass& pass = graph.add_pass("gbuffer", PassKind::draw);
   pass.samples = o.samples;
   pass.depth = images.depth;
@@ -184,8 +163,8 @@ void add_gbuffer_pass(FrameGraph& graph, const FrameParts& parts, const SbaaOpti
     pass.batches.push_back(record_batch(graph, parts, o, parts.draws.mask, true));
 }
 
-void add_shade_pass(FrameGraph& graph, const FrameParts& parts, const SbaaOptions& o,
-                    const SbaaImages& images, ImageId output) {
+void add_shade_pass(FrameGraph& graph, const FrameParts& parts, const Setup& o, const SbaaImages& images,
+                    ImageId output) {
   auto u = std::make_shared<SbaaShadeUniforms>();
   u->surfaces = describe_surfaces(graph, o);
   u->weigh_background = o.weigh_background;
@@ -205,7 +184,7 @@ void add_shade_pass(FrameGraph& graph, const FrameParts& parts, const SbaaOption
   pass.storage = {images.records};
 }
 
-FrameGraph build(const FrameRequest& request, const SbaaOptions& o) {
+FrameGraph build(const FrameRequest& request, const Setup& o) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
   const SbaaImages images = add_images(graph, o);
@@ -218,53 +197,65 @@ FrameGraph build(const FrameRequest& request, const SbaaOptions& o) {
   return graph;
 }
 
-FrameGraph build_sbaa_top(const FrameRequest& request, const Parameters& parameters) {
-  return build(request, read_options(parameters));
+FrameGraph build_sbaa_top(const FrameRequest& request, const SbaaOptions& options) {
+  return build(request, make_setup(options));
 }
 
-FrameGraph build_sbaa_merge(const FrameRequest& request, const Parameters& parameters) {
-  SbaaOptions o = read_options(parameters);
-  o.sample = value(parameters, "pack_id_normal") != 0 && o.id_bits < 8 ? SbaaSample::packed
-                                                                       : SbaaSample::id_and_normal;
-  o.cos_alpha = static_cast<float>(std::cos(value(parameters, "alpha")));
-  o.end_region = static_cast<float>(value(parameters, "end_region"));
-  o.linear_depth = value(parameters, "merge_depth") != 0;
+FrameGraph build_sbaa_merge(const FrameRequest& request, const SbaaMergeOptions& options) {
+  Setup o = make_setup(options.sbaa);
+  o.sample = options.pack_id_normal && o.id_bits < 8 ? SbaaSample::packed : SbaaSample::id_and_normal;
+  o.cos_alpha = static_cast<float>(std::cos(options.alpha_rad));
+  o.end_region = static_cast<float>(options.end_region);
+  o.linear_depth = options.merge_depth == SbaaMergeDepth::linear;
   return build(request, o);
 }
 
-constexpr ParameterInfo kSurfaces{"n", 2, 1, 32, "surfaces kept of a pixel, at most its samples"};
-constexpr ParameterInfo kSamples{"msaa", 8, 2, 32, "visibility samples a pixel: a power of two"};
-constexpr ParameterInfo kIdBits{"id_bits", 7, 4, 16, "low bits of primitive numbers that are kept"};
-constexpr ParameterInfo kRecordBytes{"record_bytes", 32, 12, 64,
-                                     "G-buffer of a surface; below 32 without position, below 16 without "
-                                     "emission"};
-constexpr ParameterInfo kBackground{
-    "background", 0, 0, 1, "whether background samples weigh in at partly covered pixels", "weighted|ignore"};
-constexpr std::array<ParameterInfo, 6> kTop = {kSurfaces,    kSamples,    kIdBits,
-                                               kRecordBytes, kBackground, kCentroid};
-constexpr std::array<ParameterInfo, 10> kMerge = {
-    kSurfaces,
-    kSamples,
-    kIdBits,
-    kRecordBytes,
-    kBackground,
-    kCentroid,
-    ParameterInfo{"alpha", 0.19634954084936207, 0.001, 1.57,
-                  "angle within which normals are of one surface, in radians"},
-    ParameterInfo{"end_region", 0.25, 0, 0.5,
-                  "share of the depth range at each end: samples only there are two surfaces"},
-    ParameterInfo{"merge_depth", 0, 0, 1, "depth as stored, or distances", "stored|linear"},
-    ParameterInfo{"pack_id_normal", 0, 0, 1,
-                  "number and normal in one texel of 4 bytes (up to 7 bits of the number)", "off|on"}};
-
-constexpr TechniqueInfo kTechniques[] = {
-    {"sbaa_top", "deferred, the n primitives with the most samples of a pixel lit (SBAA)", kTop,
-     build_sbaa_top},
-    {"sbaa_merge", "the same, primitives that form one surface merged (SBAA)", kMerge, build_sbaa_merge},
+using C = SbaaCounters;
+constexpr CounterLaw kLaws[] = {
+    HWSIM_LAW_EQUAL(
+        "technique.slots_emitted_first + _second + _third + _further = technique.slots_emitted_surfaces",
+        c.technique[C::slots_emitted_first_surfaces] + c.technique[C::slots_emitted_second_surfaces] +
+            c.technique[C::slots_emitted_third_surfaces] + c.technique[C::slots_emitted_further_surfaces],
+        c.technique[C::slots_emitted_surfaces]),
+    HWSIM_LAW_AT_MOST("technique.slots_emitted_second_surfaces <= technique.slots_emitted_first_surfaces",
+                      c.technique[C::slots_emitted_second_surfaces],
+                      c.technique[C::slots_emitted_first_surfaces]),
+    HWSIM_LAW_AT_MOST("technique.merge_fallbacks_surfaces <= technique.slots_emitted_surfaces",
+                      c.technique[C::merge_fallbacks_surfaces], c.technique[C::slots_emitted_surfaces]),
 };
 
 }  // namespace
 
-std::span<const TechniqueInfo> sbaa_techniques() { return kTechniques; }
+void describe(OptionList& list, SbaaOptions& o) {
+  list.whole("n", o.surfaces, {1, 32}, "surfaces kept of a pixel, at most its samples");
+  list.whole("msaa", o.samples, {2, 32}, "visibility samples a pixel: a power of two");
+  list.whole("id_bits", o.id_bits, {4, 16}, "low bits of primitive numbers that are kept");
+  list.whole("record_bytes", o.record_bytes, {kLeastRecordBytes, kLargestRecordBytes},
+             "G-buffer of a surface; below 32 without position, below 16 without emission");
+  list.choice("background", o.background, "weighted|ignore",
+              "whether background samples weigh in at partly covered pixels");
+  describe_centroid(list, o.centroid);
+}
+
+void describe(OptionList& list, SbaaMergeOptions& o) {
+  describe(list, o.sbaa);
+  list.real("alpha", o.alpha_rad, {0.001, 1.57}, "angle within which normals are of one surface, in radians");
+  list.real("end_region", o.end_region, {0, 0.5},
+            "share of the depth range at each end: samples only there are two surfaces");
+  list.choice("merge_depth", o.merge_depth, "stored|linear", "depth as stored, or distances");
+  list.choice("pack_id_normal", o.pack_id_normal, "off|on",
+              "number and normal in one texel of 4 bytes (up to 7 bits of the number)");
+}
+
+Room sbaa_room() {
+  return {
+      .techniques = {base_technique("sbaa_top",
+                                    "deferred, the n primitives with the most samples of a pixel lit (SBAA)",
+                                    build_sbaa_top),
+                     base_technique("sbaa_merge", "the same, primitives that form one surface merged (SBAA)",
+                                    build_sbaa_merge)},
+      .counters = C::kDeclared,
+      .laws = kLaws};
+}
 
 }  // namespace hwsim::algos

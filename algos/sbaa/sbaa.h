@@ -1,9 +1,10 @@
 #pragma once
-// Surface based anti-aliasing (Salvi and Vidimce 2012; techniques 3).
+// Surface based anti-aliasing (techniques 3; Salvi and Vidimce 2012): visibility at full rate, a G-buffer of
+// the few surfaces that matter in a pixel.
 #include "algos/base/technique.h"
 
 namespace hwsim::algos {
 
-std::span<const TechniqueInfo> sbaa_techniques();
+Room sbaa_room();
 
 }  // namespace hwsim::algos

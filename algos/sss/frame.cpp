@@ -4,7 +4,6 @@
 #include <array>
 
 #include "algos/sss/classify.h"
-#include "algos/wire/draws.h"
 
 namespace hwsim::algos {
 using namespace pipeline;
@@ -74,27 +73,27 @@ void set_samples(SssUniforms& u) {
   }
 }
 
-SssUniforms make_uniforms(const FrameGraph& graph, const FrameParts& parts, const Parameters& p) {
+SssUniforms make_uniforms(const FrameGraph& graph, const FrameParts& parts, const SssOptions& o) {
   SssUniforms u;
   u.lighting = parts.lighting;
   if (parts.shadow_map) u.lighting.shadow_slot = kSssShadowSlot;
   u.clip_from_world = parts.clip_from_world;
   u.width_px = graph.width();
   u.height_px = graph.height();
-  u.mode = value(p, "mode") == 0 ? SssMode::both : SssMode::either;
-  u.triangle_px = real(p, "tri_px");
-  u.highlight_px = real(p, "hl_px");
-  u.early_exit = value(p, "early_exit") != 0;
-  u.threshold = real(p, "tau");
+  u.mode = o.mode;
+  u.triangle_px = static_cast<float>(o.triangle_px);
+  u.highlight_px = static_cast<float>(o.highlight_px);
+  u.early_exit = o.early_exit;
+  u.threshold = static_cast<float>(o.threshold);
   const bool phong = parts.lighting.model == ShadingModel::phong;
   u.exponent_scale = phong ? 1.0f : 0.25f;  // half vectors turn half as fast as reflections
   u.normalized = !phong;
-  u.samples_per_px = real(p, "rho");
-  u.samples_min = real(p, "k_min");
-  u.samples_max = std::max(real(p, "k_max"), u.samples_min);
-  u.border_share = real(p, "border_frac");
-  u.depth_bias = real(p, "pt_bias_units") * 0x1p-24f;
-  u.depth_slope = real(p, "pt_bias_slope");
+  u.samples_per_px = static_cast<float>(o.samples_per_px);
+  u.samples_min = static_cast<float>(o.samples_min);
+  u.samples_max = std::max(static_cast<float>(o.samples_max), u.samples_min);
+  u.border_share = static_cast<float>(o.border_share);
+  u.depth_bias = static_cast<float>(o.depth_bias_steps) * 0x1p-24f;
+  u.depth_slope = static_cast<float>(o.depth_slope);
   set_samples(u);
   return u;
 }
@@ -102,19 +101,16 @@ SssUniforms make_uniforms(const FrameGraph& graph, const FrameParts& parts, cons
 /// The paper presumes opaque solids. What is blended over them writes no depth, so samples behind it would
 /// replace it: its depth is drawn apart, and they keep away.
 void add_overlay_depth(FrameGraph& graph, const SssFrame& f) {
-  const DrawBatch wires = wire_depth_batch(f.parts, f.base);
-  if (wires.draws.empty() && f.parts.draws.blend.empty()) return;
+  const DrawLists& draws = f.parts.draws;
+  if (draws.separate.empty() && draws.blend.empty()) return;
   Pass& pass = graph.add_pass("overlay_depth", PassKind::draw);
   pass.samples = f.base.samples;
   pass.depth = f.base.depth;
-  if (!wires.draws.empty()) pass.batches.push_back(wires);
-  if (f.parts.draws.blend.empty()) return;
-  DrawBatch blended;
-  blended.state = opaque_state(f.base);
-  blended.vertex = &mesh_position_program();
-  blended.vertex_uniforms = std::make_shared<MeshVertexUniforms>(MeshVertexUniforms{f.parts.clip_from_world});
-  blended.draws = f.parts.draws.blend;
-  pass.batches.push_back(std::move(blended));
+  if (!draws.separate.empty())
+    pass.batches.push_back(f.parts.request->separate->depth_batch(f.parts, f.base));
+  if (draws.blend.empty()) return;
+  pass.batches.push_back(mesh_batch(f.parts, draws.blend, mesh_position_program()));
+  pass.batches.back().state = opaque_state(f.base);
 }
 
 /// The multisampled frame's samples on triangles that are sampled: drawn once more, where the depth is
@@ -141,22 +137,22 @@ void add_marks(FrameGraph& graph, SssFrame& f) {
 
 }  // namespace
 
-SssFrame start_sss_frame(FrameGraph& graph, const FrameRequest& request, const Parameters& p,
+SssFrame start_sss_frame(FrameGraph& graph, const FrameRequest& request, const SssOptions& o,
                          bool needs_marks) {
   SssFrame f;
   f.parts = prepare_frame(graph, request);
-  if (value(p, "shading") != 0) f.parts.lighting.model = ShadingModel::phong;
+  if (o.shading == SssShading::phong) f.parts.lighting.model = ShadingModel::phong;
   f.base = make_forward_target(graph, "multisampled", graph.width(), graph.height(), kSssBaseSamples);
   f.base.centroid = true;
   add_forward(graph, f.parts, "", f.base);
-  f.critical = list_critical(f.parts, value(p, "theta_c"));
+  f.critical = list_critical(f.parts, o.theta_c_deg);
   if (f.critical.empty()) {
     graph.add_resolve("resolve", f.base.color, add_output(graph));
     return f;
   }
   add_overlay_depth(graph, f);
-  f.uniforms = make_uniforms(graph, f.parts, p);
-  f.over_others = value(p, "rest") != 0;
+  f.uniforms = make_uniforms(graph, f.parts, o);
+  f.over_others = o.rest == SssRest::others;
   if (f.over_others || needs_marks) add_marks(graph, f);
   if (f.over_others) {
     f.below = f.base.color;

@@ -2,22 +2,15 @@
 // What the variants of selective supersampling share: the multisampled frame, the triangles that may be
 // sampled, and the composite.
 #include <memory>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "algos/base/frame_parts.h"
+#include "algos/sss/options.h"
 #include "algos/sss/shaders/programs.h"
 #include "pipeline/shade/mesh_vertex.h"
 
 namespace hwsim::algos {
-
-inline double value(const Parameters& parameters, std::string_view name) {
-  return parameters.find(name)->second;
-}
-inline float real(const Parameters& parameters, std::string_view name) {
-  return static_cast<float>(value(parameters, name));
-}
 
 /// The critical triangles of a draw, and which of its attributes samples need.
 struct CriticalDraw {
@@ -37,8 +30,8 @@ struct SssFrame {
 
 /// The multisampled frame. With critical triangles, what the further passes start from; without, the output.
 /// `needs_marks`: whatever lies under the samples.
-SssFrame start_sss_frame(pipeline::FrameGraph& graph, const FrameRequest& request,
-                         const Parameters& parameters, bool needs_marks = false);
+SssFrame start_sss_frame(pipeline::FrameGraph& graph, const FrameRequest& request, const SssOptions& options,
+                         bool needs_marks = false);
 
 /// What passes that sample read: the frame's depth, and the shadow map.
 std::vector<pipeline::ImageId> sss_slots(const SssFrame& frame);

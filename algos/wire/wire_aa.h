@@ -1,12 +1,10 @@
 #pragma once
 // Wire anti-aliasing (techniques 6; GPU Pro 3, ch. 6): wires never thinner than a pixel, faded by what they
 // are too wide. A modifier: it goes with every base.
-#include <span>
-
 #include "algos/base/technique.h"
 
 namespace hwsim::algos {
 
-std::span<const TechniqueInfo> wire_techniques();
+Room wire_room();
 
 }  // namespace hwsim::algos

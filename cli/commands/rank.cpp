@@ -176,7 +176,7 @@ void Ranking::run_one(const algos::TechniqueChoice& technique, Simulator& simula
     candidate.costs.dram_mb =
         (timing.dram_bytes.total_read() + timing.dram_bytes.total_write()) / kBytesPerMb;
     candidate.support = support_name(timing.support);
-    candidate.shaded_samples = shaded_samples(point.emulation->trace);
+    candidate.shaded_samples = algos::shaded_samples(point.emulation->trace);
     candidate.error = *point.image_error;
     if (plan_.images)
       shown_.push_back(shown_image(candidate.technique, point.emulation->color, &point.flip_map));

@@ -33,7 +33,7 @@ Answer describe(const algos::TechniqueInfo& info) {
   Answer answer{
       .table = parameter_table(),
       .heading = fmt::format("{} ({}): {}\n\n", info.id, algos::kind_name(info.kind()), info.description)};
-  for (const algos::ParameterInfo& p : info.parameters) {
+  for (const algos::OptionInfo& p : info.options) {
     const bool named = !p.choices.empty();
     answer.table.rows.push_back(
         {std::string(p.name),
@@ -64,7 +64,7 @@ std::optional<Answer> find_entry(const std::string& name) {
     if (info.id == name) return describe(info);
   for (const pipeline::GeneratorInfo& info : pipeline::generators())
     if (info.name == name) return describe(info);
-  for (const CounterInfo& info : counter_catalog())
+  for (const auto& [info, place] : algos::counters())
     if (info.id == name) return describe(info);
   const std::vector<std::string> tables = names_of(table_catalog());
   if (std::find(tables.begin(), tables.end(), name) != tables.end())

@@ -1,5 +1,7 @@
 #include "hwsim/trace/counters.h"
 
+#include <string>
+
 namespace hwsim {
 namespace {
 
@@ -20,44 +22,76 @@ constexpr bool is_bytes(std::string_view name) { return name.ends_with("_bytes")
 #define HWSIM_TEX_ENTRY(name, text) HWSIM_ENTRY_OF(tex, name, text)
 #define HWSIM_CROP_ENTRY(name, text) HWSIM_ENTRY_OF(crop, name, text)
 #define HWSIM_RESOLVE_ENTRY(name, text) HWSIM_ENTRY_OF(resolve, name, text)
-#define HWSIM_TECHNIQUE_ENTRY(name, text) HWSIM_ENTRY_OF(technique, name, text)
 #define HWSIM_MEM_ENTRY(name, text) HWSIM_ENTRY_OF(mem, name, text)
 
 // The order is that of HWSIM_COUNTER_UNITS; the assertion below and a test on ids keep them together.
-constexpr CounterInfo kCatalog[] = {HWSIM_STATS_COUNTERS(HWSIM_STATS_ENTRY)          //
-                                    HWSIM_FRONT_END_COUNTERS(HWSIM_FE_ENTRY)         //
-                                    HWSIM_VS_COUNTERS(HWSIM_VS_ENTRY)                //
-                                    HWSIM_GS_COUNTERS(HWSIM_GS_ENTRY)                //
-                                    HWSIM_SETUP_COUNTERS(HWSIM_SETUP_ENTRY)          //
-                                    HWSIM_RASTER_COUNTERS(HWSIM_RASTER_ENTRY)        //
-                                    HWSIM_HIZ_COUNTERS(HWSIM_HIZ_ENTRY)              //
-                                    HWSIM_ZROP_COUNTERS(HWSIM_ZROP_ENTRY)            //
-                                    HWSIM_PS_COUNTERS(HWSIM_PS_ENTRY)                //
-                                    HWSIM_SHADER_COUNTERS(HWSIM_SHADER_ENTRY)        //
-                                    HWSIM_TEX_COUNTERS(HWSIM_TEX_ENTRY)              //
-                                    HWSIM_CROP_COUNTERS(HWSIM_CROP_ENTRY)            //
-                                    HWSIM_RESOLVE_COUNTERS(HWSIM_RESOLVE_ENTRY)      //
-                                    HWSIM_TECHNIQUE_COUNTERS(HWSIM_TECHNIQUE_ENTRY)  //
-                                    HWSIM_MEM_COUNTERS(HWSIM_MEM_ENTRY)};
-static_assert(std::size(kCatalog) == kCounterCount);
+constexpr CounterInfo kUnitCounters[] = {HWSIM_STATS_COUNTERS(HWSIM_STATS_ENTRY)      //
+                                         HWSIM_FRONT_END_COUNTERS(HWSIM_FE_ENTRY)     //
+                                         HWSIM_VS_COUNTERS(HWSIM_VS_ENTRY)            //
+                                         HWSIM_GS_COUNTERS(HWSIM_GS_ENTRY)            //
+                                         HWSIM_SETUP_COUNTERS(HWSIM_SETUP_ENTRY)      //
+                                         HWSIM_RASTER_COUNTERS(HWSIM_RASTER_ENTRY)    //
+                                         HWSIM_HIZ_COUNTERS(HWSIM_HIZ_ENTRY)          //
+                                         HWSIM_ZROP_COUNTERS(HWSIM_ZROP_ENTRY)        //
+                                         HWSIM_PS_COUNTERS(HWSIM_PS_ENTRY)            //
+                                         HWSIM_SHADER_COUNTERS(HWSIM_SHADER_ENTRY)    //
+                                         HWSIM_TEX_COUNTERS(HWSIM_TEX_ENTRY)          //
+                                         HWSIM_CROP_COUNTERS(HWSIM_CROP_ENTRY)        //
+                                         HWSIM_RESOLVE_COUNTERS(HWSIM_RESOLVE_ENTRY)  //
+                                         HWSIM_MEM_COUNTERS(HWSIM_MEM_ENTRY)};
+static_assert(std::size(kUnitCounters) + kTechniqueCounterSlots == kCounterCount);
 
-class Checker {
- public:
-  explicit Checker(std::span<CounterViolation> storage) : storage_(storage) {}
-  void at_most(std::string_view law, std::uint64_t left, std::uint64_t right) {
-    add(left <= right, law, left, right);
-  }
-  void equal(std::string_view law, std::uint64_t left, std::uint64_t right) {
-    add(left == right, law, left, right);
-  }
-  std::span<const CounterViolation> found() const { return storage_.first(count_); }
+/// "technique.slot_0" and so on: ids and the names within them.
+std::vector<CounterInfo> catalog_with_slots() {
+  static const std::vector<std::string> ids = [] {
+    std::vector<std::string> list;
+    for (std::size_t slot = 0; slot < kTechniqueCounterSlots; ++slot)
+      list.push_back("technique.slot_" + std::to_string(slot));
+    return list;
+  }();
+  std::vector<CounterInfo> catalog(std::begin(kUnitCounters), std::end(kUnitCounters));
+  for (const std::string& id : ids)
+    catalog.push_back({id, "technique", std::string_view(id).substr(10),
+                       "what the technique that has this slot declares", "generic"});
+  return catalog;
+}
 
- private:
-  void add(bool holds, std::string_view law, std::uint64_t left, std::uint64_t right) {
-    if (!holds && count_ < storage_.size()) storage_[count_++] = {law, left, right};
-  }
-  std::span<CounterViolation> storage_;
-  std::size_t count_ = 0;
+constexpr CounterLaw kUnitLaws[] = {
+    HWSIM_LAW_EQUAL("setup.culled_* + setup.out_primitives = setup.in_primitives",
+                    c.setup.culled_frustum_primitives + c.setup.culled_backface_primitives +
+                        c.setup.culled_zero_area_primitives + c.setup.culled_sample_miss_primitives +
+                        c.setup.out_primitives,
+                    c.setup.in_primitives),
+    HWSIM_LAW_AT_MOST("stats.geometry_shader_primitives <= gs.output_vertices",
+                      c.stats.geometry_shader_primitives, c.gs.output_vertices),
+    HWSIM_LAW_EQUAL("hiz.killed_tiles + hiz.accepted_tiles + hiz.ambiguous_tiles = hiz.tested_tiles",
+                    c.hiz.killed_tiles + c.hiz.accepted_tiles + c.hiz.ambiguous_tiles, c.hiz.tested_tiles),
+    HWSIM_LAW_AT_MOST("zrop.early_z_killed_samples <= zrop.early_z_tested_samples",
+                      c.zrop.early_z_killed_samples, c.zrop.early_z_tested_samples),
+    HWSIM_LAW_AT_MOST("zrop.late_z_killed_samples <= zrop.late_z_tested_samples",
+                      c.zrop.late_z_killed_samples, c.zrop.late_z_tested_samples),
+    HWSIM_LAW_AT_MOST("zrop.early_z_tested_samples <= raster.covered_samples", c.zrop.early_z_tested_samples,
+                      c.raster.covered_samples),
+    HWSIM_LAW_AT_MOST("raster.fragments <= raster.covered_samples", c.raster.fragments,
+                      c.raster.covered_samples),
+    HWSIM_LAW_AT_MOST("raster.fragments <= 4 raster.quads", c.raster.fragments, 4 * c.raster.quads),
+    HWSIM_LAW_AT_MOST("raster.partial_quads <= raster.quads", c.raster.partial_quads, c.raster.quads),
+    HWSIM_LAW_EQUAL("ps.invocations + ps.helper_invocations = stats.fragment_shader_invocations",
+                    c.ps.invocations + c.ps.helper_invocations, c.stats.fragment_shader_invocations),
+    HWSIM_LAW_AT_MOST("ps.discarded_invocations <= ps.invocations", c.ps.discarded_invocations,
+                      c.ps.invocations),
+    HWSIM_LAW_AT_MOST("shader.alu_lane_ops <= shader.alu_issued_lane_ops_w8", c.shader.alu_lane_ops,
+                      c.shader.alu_issued_lane_ops_w8),
+    HWSIM_LAW_AT_MOST("shader.alu_issued_lane_ops_w8 <= shader.alu_issued_lane_ops_w64",
+                      c.shader.alu_issued_lane_ops_w8, c.shader.alu_issued_lane_ops_w64),
+    HWSIM_LAW_AT_MOST("shader.same_address_atomic_lane_ops <= shader.atomic_lane_ops",
+                      c.shader.same_address_atomic_lane_ops, c.shader.atomic_lane_ops),
+    HWSIM_LAW_AT_MOST("crop.blended_samples <= crop.written_samples", c.crop.blended_samples,
+                      c.crop.written_samples),
+    HWSIM_LAW_AT_MOST("zrop.first_touched_tiles <= zrop.touched_tiles", c.zrop.first_touched_tiles,
+                      c.zrop.touched_tiles),
+    HWSIM_LAW_AT_MOST("crop.first_touched_tiles <= crop.touched_tiles", c.crop.first_touched_tiles,
+                      c.crop.touched_tiles),
 };
 
 }  // namespace
@@ -83,64 +117,21 @@ PassCounters& operator+=(PassCounters& sum, const PassCounters& part) {
   return sum;
 }
 
-std::span<const CounterInfo> counter_catalog() { return kCatalog; }
+std::span<const CounterInfo> counter_catalog() {
+  static const std::vector<CounterInfo> catalog = catalog_with_slots();
+  return catalog;
+}
 
-std::span<const CounterViolation> check_conservation(const PassCounters& c,
-                                                     std::span<CounterViolation> storage) {
-  Checker check(storage);
-  check.equal("setup.culled_* + setup.out_primitives = setup.in_primitives",
-              c.setup.culled_frustum_primitives + c.setup.culled_backface_primitives +
-                  c.setup.culled_zero_area_primitives + c.setup.culled_sample_miss_primitives +
-                  c.setup.out_primitives,
-              c.setup.in_primitives);
-  check.at_most("stats.geometry_shader_primitives <= gs.output_vertices", c.stats.geometry_shader_primitives,
-                c.gs.output_vertices);
-  check.equal(
-      "technique.sss_uncritical_primitives + early_exit + processed = technique.sss_tested_primitives",
-      c.technique.sss_uncritical_primitives + c.technique.sss_early_exit_primitives +
-          c.technique.sss_processed_primitives,
-      c.technique.sss_tested_primitives);
-  check.equal("hiz.killed_tiles + hiz.accepted_tiles + hiz.ambiguous_tiles = hiz.tested_tiles",
-              c.hiz.killed_tiles + c.hiz.accepted_tiles + c.hiz.ambiguous_tiles, c.hiz.tested_tiles);
-  check.at_most("zrop.early_z_killed_samples <= zrop.early_z_tested_samples", c.zrop.early_z_killed_samples,
-                c.zrop.early_z_tested_samples);
-  check.at_most("zrop.late_z_killed_samples <= zrop.late_z_tested_samples", c.zrop.late_z_killed_samples,
-                c.zrop.late_z_tested_samples);
-  check.at_most("zrop.early_z_tested_samples <= raster.covered_samples", c.zrop.early_z_tested_samples,
-                c.raster.covered_samples);
-  check.at_most("raster.fragments <= raster.covered_samples", c.raster.fragments, c.raster.covered_samples);
-  check.at_most("raster.fragments <= 4 raster.quads", c.raster.fragments, 4 * c.raster.quads);
-  check.at_most("raster.partial_quads <= raster.quads", c.raster.partial_quads, c.raster.quads);
-  check.equal("ps.invocations + ps.helper_invocations = stats.fragment_shader_invocations",
-              c.ps.invocations + c.ps.helper_invocations, c.stats.fragment_shader_invocations);
-  check.at_most("ps.discarded_invocations <= ps.invocations", c.ps.discarded_invocations, c.ps.invocations);
-  check.at_most("shader.alu_lane_ops <= shader.alu_issued_lane_ops_w8", c.shader.alu_lane_ops,
-                c.shader.alu_issued_lane_ops_w8);
-  check.at_most("shader.alu_issued_lane_ops_w8 <= shader.alu_issued_lane_ops_w64",
-                c.shader.alu_issued_lane_ops_w8, c.shader.alu_issued_lane_ops_w64);
-  check.at_most("shader.same_address_atomic_lane_ops <= shader.atomic_lane_ops",
-                c.shader.same_address_atomic_lane_ops, c.shader.atomic_lane_ops);
-  check.at_most("crop.blended_samples <= crop.written_samples", c.crop.blended_samples,
-                c.crop.written_samples);
-  check.at_most("zrop.first_touched_tiles <= zrop.touched_tiles", c.zrop.first_touched_tiles,
-                c.zrop.touched_tiles);
-  check.at_most("crop.first_touched_tiles <= crop.touched_tiles", c.crop.first_touched_tiles,
-                c.crop.touched_tiles);
-  const TechniqueCounters& t = c.technique;
-  check.equal(
-      "technique.slots_emitted_first + _second + _third + _further = technique.slots_emitted_surfaces",
-      t.slots_emitted_first_surfaces + t.slots_emitted_second_surfaces + t.slots_emitted_third_surfaces +
-          t.slots_emitted_further_surfaces,
-      t.slots_emitted_surfaces);
-  check.at_most("technique.slots_emitted_second_surfaces <= technique.slots_emitted_first_surfaces",
-                t.slots_emitted_second_surfaces, t.slots_emitted_first_surfaces);
-  check.at_most("technique.merge_fallbacks_surfaces <= technique.slots_emitted_surfaces",
-                t.merge_fallbacks_surfaces, t.slots_emitted_surfaces);
-  check.at_most("technique.agaa_plane_split_pixels <= technique.agaa_aggregates",
-                c.technique.agaa_plane_split_pixels, c.technique.agaa_aggregates);
-  check.at_most("technique.agaa_mixed_code_fragments <= ps.invocations",
-                c.technique.agaa_mixed_code_fragments, c.ps.invocations);
-  return check.found();
+std::span<const CounterLaw> unit_laws() { return kUnitLaws; }
+
+std::vector<CounterViolation> violations(const PassCounters& counters, std::span<const CounterLaw> laws) {
+  std::vector<CounterViolation> found;
+  for (const CounterLaw& law : laws) {
+    const std::uint64_t left = law.left(counters), right = law.right(counters);
+    const bool holds = law.relation == CounterLaw::Relation::equal ? left == right : left <= right;
+    if (!holds) found.push_back({law.text, left, right});
+  }
+  return found;
 }
 
 }  // namespace hwsim

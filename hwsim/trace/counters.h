@@ -1,5 +1,5 @@
 #pragma once
-// Every count of work, declared once: the line below gives the field, the CSV column, the JSON key, the
+// Every count of work, declared once: a line below gives the field, the CSV column, the JSON key, the
 // catalog entry of `hwsim list counters` and the documentation. One count is what the text says it is.
 // Counters are integers, so sums do not depend on the number of threads. Ratios are functions, never stored.
 #include <array>
@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace hwsim {
 
@@ -146,38 +147,6 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(command_words, "32-bit words of the command stream") \
   X(cleared_tiles, "8x8 tiles cleared, all samples and targets")
 
-/// What techniques did, beyond what the units saw.
-#define HWSIM_TECHNIQUE_COUNTERS(X)                                                                   \
-  X(lit_samples, "G-buffer samples, surfaces or aggregates that were lit, and pixels without any")    \
-  X(slots_emitted_surfaces, "SBAA: surfaces that the analysis chose for a slot of the G-buffer")      \
-  X(slots_emitted_first_surfaces, "of these, for a pixel's first slot")                               \
-  X(slots_emitted_second_surfaces, "of these, for a pixel's second slot")                             \
-  X(slots_emitted_third_surfaces, "of these, for a pixel's third slot")                               \
-  X(slots_emitted_further_surfaces, "of these, for a pixel's fourth slot and beyond")                 \
-  X(merge_fallbacks_surfaces,                                                                         \
-    "of these, single primitives: depths of the aligned samples lay in two groups")                   \
-  X(slots_empty_surfaces, "of these, those that no fragment wrote")                                   \
-  X(slot_conflicts_fragments, "SBAA: fragments that replaced another one's record in a slot")         \
-  X(agaa_aggregates, "AGAA: aggregates that the clustering of pixels' samples made")                  \
-  X(agaa_plane_split_pixels, "AGAA: pixels in which it made several aggregates of one plane")         \
-  X(agaa_mixed_code_fragments, "AGAA: fragments whose samples belong to several aggregates")          \
-  X(agaa_plane_path_pixels, "AGAA: pixels whose samples were clustered by their depth tile's planes") \
-  X(sss_tested_primitives, "critical triangles that selective supersampling tested in this view")     \
-  X(sss_uncritical_primitives, "of these, out of view or not critical in it")                         \
-  X(sss_early_exit_primitives, "of these, too far from a highlight")                                  \
-  X(sss_processed_primitives, "of these, sampled further")                                            \
-  X(sss_point_samples, "points placed on them")                                                       \
-  X(sss_shaded_samples, "lighting evaluations of the further samples")                                \
-  X(sss_stored_fragments, "fragments stored in per-pixel lists")                                      \
-  X(sss_dropped_fragments, "fragments that found the lists' memory full: the image lacks them")       \
-  X(sss_truncated_pixels, "pixels whose list was longer than the resolve reads")                      \
-  X(sss_list_1_pixels, "pixels with one fragment in their list")                                      \
-  X(sss_list_2_to_3_pixels, "pixels with 2 or 3")                                                     \
-  X(sss_list_4_to_7_pixels, "pixels with 4 to 7")                                                     \
-  X(sss_list_8_to_15_pixels, "pixels with 8 to 15")                                                   \
-  X(sss_list_16_to_31_pixels, "pixels with 16 to 31")                                                 \
-  X(sss_list_from_32_pixels, "pixels with 32 or more")
-
 /// Bytes that units asked for, by stream; what of it DRAM moves is the timing engines' business.
 #define HWSIM_MEM_COUNTERS(X)                                             \
   X(depth_read_bytes, "depth and stencil read by tests")                  \
@@ -195,21 +164,20 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(other_write_bytes, "coverage maps, tile tables and other metadata written")
 
 /// All units: X(struct prefix, id, list)
-#define HWSIM_COUNTER_UNITS(U)                      \
-  U(Stats, stats, HWSIM_STATS_COUNTERS)             \
-  U(FrontEnd, fe, HWSIM_FRONT_END_COUNTERS)         \
-  U(Vs, vs, HWSIM_VS_COUNTERS)                      \
-  U(Gs, gs, HWSIM_GS_COUNTERS)                      \
-  U(Setup, setup, HWSIM_SETUP_COUNTERS)             \
-  U(Raster, raster, HWSIM_RASTER_COUNTERS)          \
-  U(Hiz, hiz, HWSIM_HIZ_COUNTERS)                   \
-  U(Zrop, zrop, HWSIM_ZROP_COUNTERS)                \
-  U(Ps, ps, HWSIM_PS_COUNTERS)                      \
-  U(Shader, shader, HWSIM_SHADER_COUNTERS)          \
-  U(Tex, tex, HWSIM_TEX_COUNTERS)                   \
-  U(Crop, crop, HWSIM_CROP_COUNTERS)                \
-  U(Resolve, resolve, HWSIM_RESOLVE_COUNTERS)       \
-  U(Technique, technique, HWSIM_TECHNIQUE_COUNTERS) \
+#define HWSIM_COUNTER_UNITS(U)                \
+  U(Stats, stats, HWSIM_STATS_COUNTERS)       \
+  U(FrontEnd, fe, HWSIM_FRONT_END_COUNTERS)   \
+  U(Vs, vs, HWSIM_VS_COUNTERS)                \
+  U(Gs, gs, HWSIM_GS_COUNTERS)                \
+  U(Setup, setup, HWSIM_SETUP_COUNTERS)       \
+  U(Raster, raster, HWSIM_RASTER_COUNTERS)    \
+  U(Hiz, hiz, HWSIM_HIZ_COUNTERS)             \
+  U(Zrop, zrop, HWSIM_ZROP_COUNTERS)          \
+  U(Ps, ps, HWSIM_PS_COUNTERS)                \
+  U(Shader, shader, HWSIM_SHADER_COUNTERS)    \
+  U(Tex, tex, HWSIM_TEX_COUNTERS)             \
+  U(Crop, crop, HWSIM_CROP_COUNTERS)          \
+  U(Resolve, resolve, HWSIM_RESOLVE_COUNTERS) \
   U(Mem, mem, HWSIM_MEM_COUNTERS)
 
 #define HWSIM_FIELD(name, text) std::uint64_t name = 0;
@@ -221,16 +189,31 @@ HWSIM_COUNTER_UNITS(HWSIM_UNIT_STRUCT)
 #undef HWSIM_UNIT_STRUCT
 #undef HWSIM_FIELD
 
+/// One of the counters that techniques declare (algos/base/counters.h): its place among those of all.
+struct TechniqueCounter {
+  std::size_t slot = 0;
+};
+
+/// What techniques did, beyond what the units saw. This library adds and keeps these counts; who counts what
+/// in which slot, the rooms of techniques declare.
+inline constexpr std::size_t kTechniqueCounterSlots = 40;
+struct TechniqueCounters {
+  std::array<std::uint64_t, kTechniqueCounterSlots> slots{};
+  std::uint64_t& operator[](TechniqueCounter counter) { return slots[counter.slot]; }
+  std::uint64_t operator[](TechniqueCounter counter) const { return slots[counter.slot]; }
+};
+
 /// The work of a chunk, a pass or a frame.
 struct PassCounters {
 #define HWSIM_UNIT_MEMBER(Prefix, id, LIST) Prefix##Counters id;
   HWSIM_COUNTER_UNITS(HWSIM_UNIT_MEMBER)
 #undef HWSIM_UNIT_MEMBER
+  TechniqueCounters technique;
 };
 
 inline constexpr std::size_t kCounterCount = sizeof(PassCounters) / sizeof(std::uint64_t);
 
-/// The counters as a flat array, in catalog order.
+/// The counters as a flat array, in the order of counter_catalog().
 std::span<const std::uint64_t, kCounterCount> values(const PassCounters& counters);
 std::span<std::uint64_t, kCounterCount> values(PassCounters& counters);
 
@@ -244,17 +227,39 @@ struct CounterInfo {
   std::string_view unit_kind;    ///< generic or bytes
 };
 
-/// One entry a counter, in the order of `values`.
+/// One entry a counter, in the order of `values`. Those of techniques come last, as "technique.slot_7": their
+/// names are declared elsewhere (algos::counters, algos/rooms.h).
 std::span<const CounterInfo> counter_catalog();
 
-/// Conservation laws that every pass obeys (killed <= tested, culled + out = in, ...). Empty when all hold;
-/// otherwise one sentence each, with the ids and the values.
+/// A law that the counters of every pass obey: the left side equals the right one, or is at most as large.
+struct CounterLaw {
+  enum class Relation : std::uint8_t { equal, at_most };
+  std::string_view text;  ///< with the ids: "crop.blended_samples <= crop.written_samples"
+  Relation relation = Relation::equal;
+  std::uint64_t (*left)(const PassCounters&) = nullptr;
+  std::uint64_t (*right)(const PassCounters&) = nullptr;
+};
+
+#define HWSIM_LAW(text, relation, left_side, right_side)                           \
+  ::hwsim::CounterLaw {                                                            \
+    text, ::hwsim::CounterLaw::Relation::relation,                                 \
+        [](const ::hwsim::PassCounters& c) -> std::uint64_t { return left_side; }, \
+        [](const ::hwsim::PassCounters& c) -> std::uint64_t { return right_side; } \
+  }
+/// One law: its text and both sides, in which `c` is the pass's counters.
+#define HWSIM_LAW_EQUAL(text, left, right) HWSIM_LAW(text, equal, left, right)
+#define HWSIM_LAW_AT_MOST(text, left, right) HWSIM_LAW(text, at_most, left, right)
+
+/// The laws of the units (killed <= tested, culled + out = in, ...).
+std::span<const CounterLaw> unit_laws();
+
+/// A law that does not hold, with the values of its sides.
 struct CounterViolation {
   std::string_view law;
   std::uint64_t left = 0;
   std::uint64_t right = 0;
 };
-std::span<const CounterViolation> check_conservation(const PassCounters& counters,
-                                                     std::span<CounterViolation> storage);
+/// Those of the laws that the counters break, in order.
+std::vector<CounterViolation> violations(const PassCounters& counters, std::span<const CounterLaw> laws);
 
 }  // namespace hwsim

@@ -72,9 +72,11 @@ void describe_fields(Visitor& v, Pass& pass) {
 template <class Visitor, class Trace>
 requires std::same_as<std::remove_const_t<Trace>, WorkTrace>
 void describe_fields(Visitor& v, Trace& trace) {
-  auto& [scene, technique, width_px, height_px, peak_memory_bytes, allocated_memory_bytes, passes] = trace;
+  auto& [scene, technique, technique_counters, width_px, height_px, peak_memory_bytes, allocated_memory_bytes,
+         passes] = trace;
   v.field("scene", scene);
   v.field("technique", technique);
+  v.field("technique_counters", technique_counters);
   v.field("width_px", width_px);
   v.field("height_px", height_px);
   v.field("peak_memory_bytes", peak_memory_bytes);

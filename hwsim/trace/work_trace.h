@@ -50,6 +50,8 @@ struct PassWork {
 struct WorkTrace {
   std::string scene;
   std::string technique;
+  /// The ids of the technique counters by slot, "technique.lit_samples"; empty where a slot has none.
+  std::vector<std::string> technique_counters;
   int width_px = 0;
   int height_px = 0;
   std::uint64_t peak_memory_bytes = 0;       ///< most bytes of attachments and buffers that live at once

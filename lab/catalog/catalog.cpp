@@ -61,8 +61,8 @@ Table technique_catalog() {
               {}};
   for (const algos::TechniqueInfo& info : algos::techniques()) {
     std::string parameters;
-    for (const algos::ParameterInfo& parameter : info.parameters)
-      parameters += (parameters.empty() ? "" : ", ") + std::string(parameter.name);
+    for (const algos::OptionInfo& option : info.options)
+      parameters += (parameters.empty() ? "" : ", ") + std::string(option.name);
     table.rows.push_back({std::string(info.id), std::string(algos::kind_name(info.kind())), parameters,
                           std::string(info.description)});
   }
@@ -75,7 +75,7 @@ Table counter_catalog_table() {
                {"unit_kind", "kind"},
                {"description", "one count is", false, kTextColumns}},
               {}};
-  for (const CounterInfo& info : counter_catalog())
+  for (const auto& [info, place] : algos::counters())
     table.rows.push_back({std::string(info.id), std::string(info.unit), std::string(info.unit_kind),
                           std::string(info.description)});
   return table;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "algos/rooms.h"
 #include "hwsim/gpu/gpu_config.h"
 
 namespace hwsim::lab {
@@ -68,13 +69,6 @@ constexpr ErrorCode kCodes[] = {
     {"T004", "impossible combination",
      "Techniques are combined with +: any modifiers, one base, any filters, each once. The message says what "
      "excludes what."},
-    {"T101", "lists overflowed",
-     "Per-pixel lists had too little memory, or were longer than the resolve reads: the image is "
-     "incomplete."},
-    {"T102", "an aggregate's place is left empty",
-     "Mixed samples: the color samples of a target divide its raster samples, so three aggregates are stored "
-     "as "
-     "four. The image is not affected; memory and its bandwidth are those of four."},
     {"T005", "an image is no scene",
      "Techniques that draw need a scene. An image file stands for a finished frame: only filters apply to "
      "it."},
@@ -206,6 +200,8 @@ constexpr ErrorCode kCodes[] = {
 std::vector<ErrorCode> error_codes() {
   std::vector<ErrorCode> codes(std::begin(kCodes), std::end(kCodes));
   for (const ConfigCode& code : config_codes()) codes.push_back({code.code, code.title, code.explanation});
+  for (const algos::MessageCode& code : algos::message_codes())
+    codes.push_back({code.code, code.title, code.explanation});
   std::sort(codes.begin(), codes.end(),
             [](const ErrorCode& a, const ErrorCode& b) { return a.code < b.code; });
   return codes;

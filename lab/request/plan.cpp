@@ -55,7 +55,7 @@ algos::TechniqueChoice with_settings(const algos::TechniqueChoice& choice,
   for (const algos::TechniquePart& part : choice.parts) {
     std::vector<Assignment> own;
     for (const Assignment& set : sets)
-      if (set.group() == "technique" && part.parameters.contains(key_of(set))) own.push_back(set);
+      if (set.group() == "technique" && part.info->has_option(key_of(set))) own.push_back(set);
     for (const Assignment& set : own) used.insert(set.path);
     changed = changed || !own.empty();
     text += (text.empty() ? "" : "+") + with_parameters(algos::technique_text(part), own);
@@ -72,7 +72,7 @@ std::vector<algos::TechniqueChoice> plan_techniques(const std::vector<std::strin
   for (const std::string& text : texts) try {
       const algos::TechniqueChoice choice = algos::parse_technique(text);
       for (const algos::TechniquePart& part : choice.parts)
-        for (const auto& [name, value] : part.parameters) known.insert(name);
+        for (const algos::OptionInfo& option : part.info->options) known.emplace(option.name);
       choices.push_back(with_settings(choice, sets, used));
     } catch (const InputError& error) {
       append(problems, error);

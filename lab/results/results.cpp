@@ -29,8 +29,8 @@ Json pass_json(const PassTiming& pass, const PassWork& work) {
         pass.dram_bytes.read[i] + pass.dram_bytes.write[i];
   }
   const PassCounters counters = total(work);
-  for (size_t i = 0; i < kCounterCount; ++i)
-    json["counters"][std::string(counter_catalog()[i].id)] = values(counters)[i];
+  for (const auto& [info, place] : algos::counters())
+    json["counters"][std::string(info.id)] = values(counters)[place];
   return json;
 }
 
@@ -45,7 +45,7 @@ Json frame_json(const PointResult& point) {
   json["memory_mib"] = static_cast<double>(point.emulation->trace.peak_memory_bytes) / kBytesPerMib;
   json["allocated_mib"] = static_cast<double>(point.emulation->trace.allocated_memory_bytes) / kBytesPerMib;
   json["dram_mb"] = dram_bytes(timing.dram_bytes) / kBytesPerMb;
-  json["shaded_samples"] = shaded_samples(point.emulation->trace);
+  json["shaded_samples"] = algos::shaded_samples(point.emulation->trace);
   return json;
 }
 
@@ -86,11 +86,6 @@ std::string band_of(double sol_ratio) {  // the bands of the performance-triage 
 
 }  // namespace
 
-std::uint64_t shaded_samples(const WorkTrace& trace) {
-  const TechniqueCounters counts = total(trace).technique;
-  return counts.lit_samples + counts.sss_shaded_samples;
-}
-
 std::uint64_t shader_invocations(const WorkTrace& trace) {
   const PassCounters sum = total(trace);
   return sum.ps.invocations + sum.stats.compute_shader_invocations;
@@ -125,44 +120,8 @@ Json result_json(const PointResult& point, const RunPlan& plan, const std::strin
   return json;
 }
 
-/// Samples of a pixel that the aggregates' blended targets have; 0 without such targets.
-int aggregate_samples(const WorkTrace& trace) {
-  for (const PassWork& pass : trace.passes)
-    if (pass.name == "generate" && !pass.color_targets.empty()) return pass.color_targets.front().samples;
-  return 0;
-}
-
 std::vector<Diagnostic> result_warnings(const PointResult& point) {
-  std::vector<Diagnostic> warnings;
-  const TechniqueCounters n = total(point.emulation->trace).technique;
-  const std::string name = algos::technique_text(*point.technique);
-  const auto tell = [&](Severity severity, std::string code, std::string message, std::string help) {
-    Diagnostic& d = warnings.emplace_back();
-    d.severity = severity;
-    d.code = std::move(code);
-    d.message = std::move(message);
-    d.help = std::move(help);
-  };
-  if (n.sss_dropped_fragments > 0)
-    tell(Severity::warning, "T101",
-         fmt::format("{}: {} of {} fragments found the lists full: the image lacks them", name,
-                     n.sss_dropped_fragments, n.sss_dropped_fragments + n.sss_stored_fragments),
-         fmt::format("capacity_nodes={} holds all", n.sss_dropped_fragments + n.sss_stored_fragments));
-  if (n.sss_truncated_pixels > 0)
-    tell(Severity::warning, "T101",
-         fmt::format("{}: the lists of {} pixels are longer than the resolve reads", name,
-                     n.sss_truncated_pixels),
-         "list_cap reads up to 64");
-  if (const auto& [info, parameters] = point.technique->base(); info->id == "agaa") {
-    const int aggregates = 1 + static_cast<int>(parameters.at("c"));  // the index of 1|2|3|4
-    const int samples = aggregate_samples(point.emulation->trace);
-    if (samples > aggregates)
-      tell(Severity::note, "T102",
-           fmt::format("{}: color samples divide raster samples: {} aggregates take the memory of {}", name,
-                       aggregates, samples),
-           "accumulate=atomics stores them without a gap");
-  }
-  return warnings;
+  return algos::frame_notes(*point.technique, point.emulation->trace);
 }
 
 std::string headline_time(const FrameTiming& timing) {
@@ -250,7 +209,7 @@ Table wide_pass_table(const PointResult& point) {
     for (int s = 0; s < kStreamCount; ++s)
       table.columns.push_back(
           {fmt::format("dram.{}_{}", stream_name(static_cast<Stream>(s)), direction), ""});
-  for (const CounterInfo& counter : counter_catalog()) table.columns.push_back({std::string(counter.id), ""});
+  for (const auto& [info, place] : algos::counters()) table.columns.push_back({std::string(info.id), ""});
 
   for (size_t i = 0; i < point.timing.passes.size(); ++i) {
     const PassTiming& pass = point.timing.passes[i];
@@ -261,7 +220,7 @@ Table wide_pass_table(const PointResult& point) {
     for (const auto* list : {&pass.dram_bytes.read, &pass.dram_bytes.write})
       for (const double value : *list) row.push_back(Real{value});
     const PassCounters counters = total(point.emulation->trace.passes[i]);
-    for (const std::uint64_t value : values(counters)) row.push_back(value);
+    for (const auto& [info, place] : algos::counters()) row.push_back(values(counters)[place]);
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -271,11 +230,9 @@ Table counter_table(const PointResult& point) {
   Table table{{{"pass", ""}, {"unit", ""}, {"counter", ""}, {"value", ""}, {"unit_kind", ""}}, {}};
   for (const PassWork& pass : point.emulation->trace.passes) {
     const PassCounters counters = total(pass);
-    for (size_t i = 0; i < kCounterCount; ++i) {
-      const CounterInfo& info = counter_catalog()[i];
-      table.rows.push_back({pass.name, std::string(info.unit), std::string(info.id), values(counters)[i],
+    for (const auto& [info, place] : algos::counters())
+      table.rows.push_back({pass.name, std::string(info.unit), std::string(info.id), values(counters)[place],
                             std::string(info.unit_kind)});
-    }
   }
   return table;
 }
@@ -303,7 +260,7 @@ std::vector<Cell> summary_row(const PointResult& point) {
           limiter,
           Real{dram_bytes(timing.dram_bytes) / kBytesPerMb, 1},
           Real{static_cast<double>(point.emulation->trace.peak_memory_bytes) / kBytesPerMib, 1},
-          shaded_samples(point.emulation->trace),
+          algos::shaded_samples(point.emulation->trace),
           error(&pipeline::ImageError::flip_mean, 4),
           error(&pipeline::ImageError::psnr_db, 2)};
 }

@@ -33,9 +33,6 @@ std::vector<Diagnostic> result_warnings(const PointResult& point);
 /// Two sentences: the time with its interval, and the pass and unit that it goes to.
 std::string headline(const PointResult& point, const RunPlan& plan, const std::string& scene_name);
 
-/// What was lit: fragments, the samples, surfaces and aggregates of deferred techniques, and the further
-/// samples of selective supersampling.
-std::uint64_t shaded_samples(const WorkTrace& trace);
 /// Invocations of fragment shaders for fragments and of compute shaders, all passes.
 std::uint64_t shader_invocations(const WorkTrace& trace);
 

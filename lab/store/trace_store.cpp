@@ -171,6 +171,7 @@ std::shared_ptr<const Emulation> TraceStore::emulate(SceneView& scene,
   options.progress = progress;
   Emulation emulation = pipeline::emulate(graph, gpu.features, gpu.functional, options);
   emulation.trace.technique = technique_text(technique);
+  emulation.trace.technique_counters = algos::technique_counter_ids();
   return std::make_shared<const Emulation>(std::move(emulation));
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "algos/rooms.h"
 #include "lab/base/messages.h"
 
 namespace hwsim::lab {
@@ -127,7 +128,7 @@ void SweepStore::finish(const std::string& id, const PointResult& result) {
   update.bind(5, timing.passes.empty() ? "" : unit_name(slowest_pass(timing).limiter))
       .bind(6, dram_mb(timing.dram_bytes))
       .bind(7, static_cast<double>(result.emulation->trace.peak_memory_bytes) / kBytesPerMib)
-      .bind(8, signed_count(shaded_samples(result.emulation->trace)))
+      .bind(8, signed_count(algos::shaded_samples(result.emulation->trace)))
       .bind(9, std::int64_t{result.from_cache})
       .bind(10, id)
       .run();

@@ -54,8 +54,8 @@ class ComputeLanes : public LaneFlow {
     track_texels(*group_.resources, slot, x, y, sample, mask_bits(live_), first_);
     for (int c = 0; c < kChannels; ++c) channels[c] = load_texel_int(image, c, x, y, sample);
   }
-  void count(std::uint64_t TechniqueCounters::*counter, M mask) {
-    group_.counters->technique.*counter +=
+  void count(TechniqueCounter counter, M mask) {
+    group_.counters->technique[counter] +=
         static_cast<std::uint64_t>(__builtin_popcount(mask_bits(mask & live_)));
   }
 

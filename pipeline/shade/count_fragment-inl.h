@@ -61,7 +61,7 @@ class CountFragment {
     const CountValue request = made(OpKind::fetch, x, y, sample);
     for (I& c : channels) c = I(made(OpKind::value, request));
   }
-  void count(std::uint64_t TechniqueCounters::*, M) {}
+  void count(TechniqueCounter, M) {}
   M buffer_nonzero(int, I, M) const { return {}; }
   I lane_index() { return integer(); }
   I load_group_byte(I address, M mask) { return I(made(OpKind::group_memory, address, mask)); }

@@ -192,8 +192,8 @@ class FragmentLanes : public LaneFlow {
     return BufferAccess(*batch_.resources, slot, first_).exchange_words(index, value, mask & active_ & live_);
   }
   /// Adds the lanes of `mask` to a counter: no operation of the program.
-  void count(std::uint64_t TechniqueCounters::*counter, M mask) {
-    batch_.counters->technique.*counter +=
+  void count(TechniqueCounter counter, M mask) {
+    batch_.counters->technique[counter] +=
         static_cast<std::uint64_t>(__builtin_popcount(mask_bits(mask & active_ & live_)));
   }
   /// Lanes of `mask` whose word of a buffer is not 0, for counters alone.

@@ -72,8 +72,8 @@ class GeometryLanes : public LaneFlow {
       batch_.strip_ended[static_cast<std::size_t>(first_ + __builtin_ctz(bits))] = true;
   }
   /// Adds the lanes of `mask` to a counter of the technique.
-  void count(std::uint64_t TechniqueCounters::*counter, M mask) {
-    batch_.counters->technique.*counter +=
+  void count(TechniqueCounter counter, M mask) {
+    batch_.counters->technique[counter] +=
         static_cast<std::uint64_t>(__builtin_popcount(mask_bits(mask & live_)));
   }
 
@@ -129,7 +129,7 @@ class CountGeometry : public CountFragment {
     varying_scalars_ = std::max(varying_scalars_, static_cast<int>(varyings.size()));
   }
   void end_strip(M) {}
-  void count(std::uint64_t TechniqueCounters::*, M) {}
+  void count(TechniqueCounter, M) {}
   int varying_scalars() const { return varying_scalars_; }
 
  private:

@@ -1,6 +1,7 @@
 // AGAA's aggregates from the planes of compressed depth tiles (techniques 4.6) against those from samples.
 #include <gtest/gtest.h>
 
+#include "algos/agaa/shaders/counters.h"
 #include "algos/agaa_frames.h"
 
 namespace hwsim::test {
@@ -14,7 +15,9 @@ GpuFeatures plane_features() {
 
 struct Both {
   pipeline::Emulation samples, planes;
-  std::uint64_t plane_pixels() const { return total(planes.trace).technique.agaa_plane_path_pixels; }
+  std::uint64_t plane_pixels() const {
+    return total(planes.trace).technique[algos::AgaaCounters::agaa_plane_path_pixels];
+  }
 };
 
 Both both(const std::shared_ptr<const pipeline::Scene>& scene, const std::string& parameters) {
@@ -29,8 +32,8 @@ TEST(AgaaPlanes, OnePlaneIsOneAggregateOnBothPaths) {
     const Both b = both(scene, parameters);
     EXPECT_EQ(b.plane_pixels(), static_cast<std::uint64_t>(kWidth * kHeight)) << parameters;
     EXPECT_EQ(largest_difference(b.samples.color, b.planes.color), 0.0f) << parameters;
-    EXPECT_EQ(total(b.planes.trace).technique.agaa_aggregates,
-              total(b.samples.trace).technique.agaa_aggregates);
+    EXPECT_EQ(total(b.planes.trace).technique[algos::AgaaCounters::agaa_aggregates],
+              total(b.samples.trace).technique[algos::AgaaCounters::agaa_aggregates]);
   }
 }
 
@@ -39,10 +42,12 @@ TEST(AgaaPlanes, APlaneIsNotSplit) {
   const auto scene = share(patches({{-5, 5, -1.0f, {0.7f, 0.4f, 0.2f}, 0.2f}}));
   const Both b = both(scene, "c=2,k=0.01");
   const PassCounters samples = total(b.samples.trace), planes = total(b.planes.trace);
-  EXPECT_GT(samples.technique.agaa_plane_split_pixels, 0u);
-  EXPECT_GT(samples.technique.agaa_aggregates, planes.technique.agaa_aggregates);
+  EXPECT_GT(samples.technique[algos::AgaaCounters::agaa_plane_split_pixels], 0u);
+  EXPECT_GT(samples.technique[algos::AgaaCounters::agaa_aggregates],
+            planes.technique[algos::AgaaCounters::agaa_aggregates]);
   // But for the pixels that both triangles of the rectangle share: at this k they lie apart.
-  EXPECT_LE(planes.technique.agaa_aggregates, static_cast<std::uint64_t>(kWidth * kHeight + 2 * kWidth));
+  EXPECT_LE(planes.technique[algos::AgaaCounters::agaa_aggregates],
+            static_cast<std::uint64_t>(kWidth * kHeight + 2 * kWidth));
 }
 
 // Two surfaces far apart, or at an angle: the same two aggregates, whichever comes first.
@@ -59,9 +64,10 @@ TEST(AgaaPlanes, SurfacesFarApartGiveTheSamePicture) {
 TEST(AgaaPlanes, PlanesNearerThanTheThresholdJoin) {
   const auto scene = share(patches({{-5, 0.013f, 0}, {0.013f, 5, -0.001f}}));
   const Both b = both(scene, "c=2,k=1");
-  EXPECT_EQ(total(b.planes.trace).technique.agaa_aggregates, static_cast<std::uint64_t>(kWidth * kHeight));
+  EXPECT_EQ(total(b.planes.trace).technique[algos::AgaaCounters::agaa_aggregates],
+            static_cast<std::uint64_t>(kWidth * kHeight));
   const Both apart = both(scene, "c=2,k=1,t=0");
-  EXPECT_GT(total(apart.planes.trace).technique.agaa_aggregates,
+  EXPECT_GT(total(apart.planes.trace).technique[algos::AgaaCounters::agaa_aggregates],
             static_cast<std::uint64_t>(kWidth * kHeight));
 }
 
@@ -70,8 +76,8 @@ TEST(AgaaPlanes, BackgroundTakesNoAggregate) {
   const auto scene = share(patches({{-5, 0.0f, 0, {0.9f, 0.05f, 0.05f}}}));
   const Both b = both(scene, "c=2,k=1");
   EXPECT_EQ(largest_difference(b.samples.color, b.planes.color), 0.0f);
-  EXPECT_EQ(total(b.samples.trace).technique.agaa_aggregates,
-            total(b.planes.trace).technique.agaa_aggregates);
+  EXPECT_EQ(total(b.samples.trace).technique[algos::AgaaCounters::agaa_aggregates],
+            total(b.planes.trace).technique[algos::AgaaCounters::agaa_aggregates]);
 }
 
 // More planes than aggregates: sample by sample, to the same bits.
@@ -95,7 +101,9 @@ TEST(AgaaPlanes, LayersGoBySamples) {
   GpuFeatures features = test_features();
   features.compressed_depth_read = true;
   const auto scene = share(patches({{-5, 5, 0}}));
-  EXPECT_EQ(total(render({scene, "agaa:msaa=32", features}).trace).technique.agaa_plane_path_pixels, 0u);
+  EXPECT_EQ(total(render({scene, "agaa:msaa=32", features}).trace)
+                .technique[algos::AgaaCounters::agaa_plane_path_pixels],
+            0u);
 }
 
 }  // namespace

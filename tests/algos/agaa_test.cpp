@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "algos/agaa/layout.h"
+#include "algos/agaa/shaders/counters.h"
 #include "algos/agaa_frames.h"
 
 namespace hwsim::test {
@@ -94,8 +95,8 @@ TEST(Agaa, OnePlaneIsOneAggregateAndOneFragmentsShading) {
   const pipeline::Emulation e = render(run);
   const PassCounters n = total(e.trace);
   const auto pixels = static_cast<std::uint64_t>(kWidth * kHeight);
-  EXPECT_EQ(n.technique.agaa_aggregates, pixels);
-  EXPECT_EQ(total(pass_named(e.trace, "shade")).technique.lit_samples, pixels);
+  EXPECT_EQ(n.technique[algos::AgaaCounters::agaa_aggregates], pixels);
+  EXPECT_EQ(total(pass_named(e.trace, "shade")).technique[algos::BaseCounters::lit_samples], pixels);
   const Planes chroma = planes_of(run, "aggregate_chroma");
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
@@ -200,7 +201,7 @@ TEST(Agaa, CodesNameExistingAggregatesAndFollowTheDistance) {
 TEST(Agaa, KDecidesWhetherDistanceKeepsSurfacesApart) {
   const auto aggregates = [](const std::vector<Patch>& list, const char* k, const char* more = "") {
     const Shot shot{share(patches(list)), std::string("agaa:c=2,k=") + k + more};
-    return total(render(shot).trace).technique.agaa_aggregates;
+    return total(render(shot).trace).technique[algos::AgaaCounters::agaa_aggregates];
   };
   const std::vector<Patch> parallel = {{-5, 0.02f, 0}, {0.02f, 5, -0.5f}};
   const std::vector<Patch> crossing = {{-5, 0.02f, -4.518f, glm::vec3(0.5f), 0.9f},
@@ -380,12 +381,14 @@ TEST(Agaa, MixedNormalsWidenTheLobe) {
 TEST(Agaa, CountsFragmentsWithSeveralCodes) {
   const auto split = share(patches({{-5, 5, -20, glm::vec3(0.5f), 4.0f}}));  // one plane, deep within a pixel
   const PassCounters n = total(render({split, "agaa:c=2,t=0.0001"}).trace);
-  EXPECT_GT(n.technique.agaa_mixed_code_fragments, 100u);
-  EXPECT_GT(n.technique.agaa_plane_split_pixels, 100u);
+  EXPECT_GT(n.technique[algos::AgaaCounters::agaa_mixed_code_fragments], 100u);
+  EXPECT_GT(n.technique[algos::AgaaCounters::agaa_plane_split_pixels], 100u);
   const PassCounters whole = total(render({split, "agaa:c=2,k_mode=footprint,footprint_px=64"}).trace);
   // Those that are left see the plane edge on.
-  EXPECT_LT(10 * whole.technique.agaa_mixed_code_fragments, n.technique.agaa_mixed_code_fragments);
-  EXPECT_LT(10 * whole.technique.agaa_plane_split_pixels, n.technique.agaa_plane_split_pixels);
+  EXPECT_LT(10 * whole.technique[algos::AgaaCounters::agaa_mixed_code_fragments],
+            n.technique[algos::AgaaCounters::agaa_mixed_code_fragments]);
+  EXPECT_LT(10 * whole.technique[algos::AgaaCounters::agaa_plane_split_pixels],
+            n.technique[algos::AgaaCounters::agaa_plane_split_pixels]);
 }
 
 // Every option runs and gives finite pixels.

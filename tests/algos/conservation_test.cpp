@@ -58,8 +58,7 @@ void check_full_screen(const Pass& pass, const PassCounters& n) {
 
 void check_pass(const FrameGraph& graph, const Pass& pass, const PassWork& work) {
   const PassCounters n = total(work);
-  std::array<CounterViolation, 32> storage;
-  for (const CounterViolation& v : check_conservation(n, storage))
+  for (const CounterViolation& v : algos::broken_laws(n))
     ADD_FAILURE() << v.law << ": " << v.left << ", " << v.right;
   if (n.ps.sample_rate_invocations == 0 && n.ps.invocations > 0) {
     EXPECT_EQ(n.ps.invocations, n.raster.fragments);

@@ -45,11 +45,12 @@ std::map<std::string, std::uint64_t> signature(const FrameSetup& setup, const Em
   std::map<std::string, std::uint64_t> all;
   all[key + "image"] = fnv1a(e.color.pixels.data(), e.color.pixels.size() * sizeof(glm::vec4));
   std::uint64_t& chunks = all[key + "chunks"];
-  for (const PassWork& pass : e.trace.passes)
-    for (const PassCounters& chunk : pass.chunks) chunks = fnv1a(&chunk, sizeof(chunk), chunks);
   const PassCounters sum = total(e.trace);
-  for (std::size_t i = 0; i < kCounterCount; ++i)
-    all[key + std::string(counter_catalog()[i].id)] = values(sum)[i];
+  for (const PassWork& pass : e.trace.passes)
+    for (const PassCounters& chunk : pass.chunks)
+      for (const auto& [info, place] : algos::counters())
+        chunks = fnv1a(&values(chunk)[place], sizeof(std::uint64_t), chunks);
+  for (const auto& [info, place] : algos::counters()) all[key + std::string(info.id)] = values(sum)[place];
   return all;
 }
 

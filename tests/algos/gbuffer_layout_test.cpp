@@ -111,7 +111,8 @@ TEST(GBufferLayout, AttributesAreTakenInsideThePrimitive) {
 }
 
 std::uint64_t lit_samples(const std::string& technique, std::shared_ptr<const pipeline::Scene> scene) {
-  return total(run_graph(build_graph(technique, std::move(scene), 160, 90)).trace).technique.lit_samples;
+  return total(run_graph(build_graph(technique, std::move(scene), 160, 90)).trace)
+      .technique[algos::BaseCounters::lit_samples];
 }
 
 // A tilted wall that fills the screen has no complex pixel by any layout's criteria (techniques 2.3).

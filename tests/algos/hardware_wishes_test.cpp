@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "algos/agaa/shaders/counters.h"
 #include "algos/agaa_frames.h"
+#include "algos/sss/shaders/counters.h"
 
 namespace hwsim::test {
 namespace {
@@ -94,9 +96,9 @@ TEST(Wishes, CompressedDepthReplacesSamplesByPlanes) {
   const pipeline::Emulation by_planes = render({scene, "agaa:c=2,msaa=8,k=1", features});
   const PassCounters without = of(by_samples, "define"), with = of(by_planes, "define");
   constexpr std::uint64_t kPixels = kWidth * kHeight, kTiles = kPixels / 64;
-  EXPECT_EQ(without.technique.agaa_plane_path_pixels, 0u);
+  EXPECT_EQ(without.technique[algos::AgaaCounters::agaa_plane_path_pixels], 0u);
   EXPECT_EQ(without.mem.texture_read_bytes, kPixels * 6 * 8);
-  EXPECT_EQ(with.technique.agaa_plane_path_pixels, kPixels);
+  EXPECT_EQ(with.technique[algos::AgaaCounters::agaa_plane_path_pixels], kPixels);
   // One plane: 12 bytes in a piece of 32. Two triangles of the rectangle: 24, and a bit for each sample.
   EXPECT_GE(with.mem.texture_read_bytes, kTiles * 32);
   EXPECT_LE(with.mem.texture_read_bytes, kTiles * 96);
@@ -152,7 +154,8 @@ TEST(Wishes, TessellatorPointsFillNoBuffer) {
   EXPECT_GT(without.gs.output_bytes, 0u);
   EXPECT_EQ(with.gs.output_bytes, 0u);
   EXPECT_EQ(with.gs.output_vertices, without.gs.output_vertices);
-  EXPECT_EQ(with.technique.sss_point_samples, without.technique.sss_point_samples);
+  EXPECT_EQ(with.technique[algos::SssCounters::sss_point_samples],
+            without.technique[algos::SssCounters::sss_point_samples]);
   EXPECT_EQ(largest_difference(w.with.color, w.without.color), 0.0f);
   EXPECT_NE(
       refusal("sss_gs:points=tessellator", scene, test_features()).find("gpu.features.tessellator_points"),
@@ -166,7 +169,8 @@ TEST(Wishes, ConservativeRasterSparesFragments) {
   const PassCounters own = of(shoot("sss_ppll:conservative=raster", scene, test_features()), "sample");
   EXPECT_LT(own.raster.fragments, boxes.raster.fragments);
   EXPECT_LT(own.gs.output_bytes, boxes.gs.output_bytes);
-  EXPECT_EQ(own.technique.sss_stored_fragments, boxes.technique.sss_stored_fragments);
+  EXPECT_EQ(own.technique[algos::SssCounters::sss_stored_fragments],
+            boxes.technique[algos::SssCounters::sss_stored_fragments]);
 }
 
 // AGAA 4: without mixed samples aggregates add up in a buffer, by atomics instead of blending.

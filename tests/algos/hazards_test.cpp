@@ -9,6 +9,8 @@
 #include <random>
 
 #include "algos/agaa_frames.h"
+#include "algos/sbaa/shaders/counters.h"
+#include "algos/sss/shaders/counters.h"
 
 namespace hwsim::test {
 namespace {
@@ -157,7 +159,7 @@ TEST(Hazards, IntegerAtomicsWrapAndStayNumbers) {
                    features});
   };
   const pipeline::Emulation one = shoot(1, "atomics=integer,fixed_bits=24");
-  ASSERT_GT(total(one.trace).technique.sss_processed_primitives, 0u);
+  ASSERT_GT(total(one.trace).technique[algos::SssCounters::sss_processed_primitives], 0u);
   const pipeline::Emulation wraps = shoot(600, "atomics=integer,fixed_bits=24");
   const pipeline::Emulation floats = shoot(600, "atomics=float");
   expect_numbers(wraps.color, "wrapped");
@@ -205,8 +207,8 @@ double fallback_share(int samples) {
     const pipeline::Emulation e = render(
         {share(std::move(scene)), "sbaa_merge:n=2,msaa=" + std::to_string(samples), test_features(), 16, 16});
     const TechniqueCounters n = total(e.trace).technique;
-    fallbacks += n.merge_fallbacks_surfaces;
-    pixels += n.slots_emitted_first_surfaces;
+    fallbacks += n[algos::SbaaCounters::merge_fallbacks_surfaces];
+    pixels += n[algos::SbaaCounters::slots_emitted_first_surfaces];
   }
   return static_cast<double>(fallbacks) / static_cast<double>(pixels);
 }

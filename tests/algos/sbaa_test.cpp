@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "algos/sbaa/shaders/counters.h"
 #include "algos/sbaa_frames.h"
 
 namespace hwsim::test {
@@ -135,9 +136,10 @@ void compare_analysis(const std::string& technique, const AnalysisRules& rules, 
   }
   EXPECT_EQ(wrong, 0u);
   const PassCounters n = frame_total(run_graph(graph));
-  EXPECT_EQ(n.technique.slots_emitted_surfaces, emitted);
-  EXPECT_EQ(n.technique.merge_fallbacks_surfaces, fallbacks);
-  EXPECT_EQ(n.technique.slots_empty_surfaces, 0u);  // EQUAL finds the bits of the first pass
+  EXPECT_EQ(n.technique[algos::SbaaCounters::slots_emitted_surfaces], emitted);
+  EXPECT_EQ(n.technique[algos::SbaaCounters::merge_fallbacks_surfaces], fallbacks);
+  EXPECT_EQ(n.technique[algos::SbaaCounters::slots_empty_surfaces],
+            0u);  // EQUAL finds the bits of the first pass
   EXPECT_GT(emitted, 0u);
 }
 
@@ -231,13 +233,15 @@ TEST(SbaaMerge, OfATessellatedPlaneIsOneSurface) {
   const auto scene = share(faceted_scene(corners));
   const auto graph = build_graph("sbaa_merge:n=2", scene, kWidth, kHeight);
   const PassCounters n = frame_total(run_graph(graph));
-  EXPECT_EQ(n.technique.slots_emitted_surfaces, static_cast<std::uint64_t>(kWidth * kHeight));
-  EXPECT_EQ(n.technique.merge_fallbacks_surfaces, 0u);
+  EXPECT_EQ(n.technique[algos::SbaaCounters::slots_emitted_surfaces],
+            static_cast<std::uint64_t>(kWidth * kHeight));
+  EXPECT_EQ(n.technique[algos::SbaaCounters::merge_fallbacks_surfaces], 0u);
   const Image surfaces = dump(graph, "surfaces");
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) ASSERT_EQ(surfaces.at(x, y).y, 8.0f) << x << ", " << y;
   const PassCounters top = frame_total(run_graph(build_graph("sbaa_top:n=2", scene, kWidth, kHeight)));
-  EXPECT_GT(top.technique.slots_emitted_second_surfaces, static_cast<std::uint64_t>(kWidth * kHeight / 2));
+  EXPECT_GT(top.technique[algos::SbaaCounters::slots_emitted_second_surfaces],
+            static_cast<std::uint64_t>(kWidth * kHeight / 2));
 }
 
 // Triangles whose normals differ pairwise by more than pi/16: nothing merges.
@@ -261,8 +265,9 @@ TEST(SbaaMerge, OfBladesIsTop) {
   const auto top = run_graph(build_graph("sbaa_top:n=2", scene, kWidth, kHeight));
   const auto merge = run_graph(build_graph("sbaa_merge:n=2", scene, kWidth, kHeight));
   EXPECT_EQ(difference(top.color, merge.color, "image"), "");
-  EXPECT_EQ(frame_total(top).technique.lit_samples, frame_total(merge).technique.lit_samples);
-  EXPECT_GT(frame_total(top).technique.slots_emitted_second_surfaces, 0u);
+  EXPECT_EQ(frame_total(top).technique[algos::BaseCounters::lit_samples],
+            frame_total(merge).technique[algos::BaseCounters::lit_samples]);
+  EXPECT_GT(frame_total(top).technique[algos::SbaaCounters::slots_emitted_second_surfaces], 0u);
 }
 
 // A near and a far plane with one normal: their samples lie at both ends of the depth range.
@@ -275,9 +280,10 @@ TEST(SbaaMerge, OfDistantParallelPlanesFallsBackToTop) {
   const auto merge = run_graph(graph);
   const auto top = run_graph(build_graph("sbaa_top:n=2", scene, kWidth, kHeight));
   const PassCounters n = frame_total(merge);
-  EXPECT_GT(n.technique.merge_fallbacks_surfaces, static_cast<std::uint64_t>(kHeight));
+  EXPECT_GT(n.technique[algos::SbaaCounters::merge_fallbacks_surfaces], static_cast<std::uint64_t>(kHeight));
   // Each edge pixel falls back once: what is left then is one plane, of one depth.
-  EXPECT_EQ(n.technique.merge_fallbacks_surfaces, n.technique.slots_emitted_second_surfaces);
+  EXPECT_EQ(n.technique[algos::SbaaCounters::merge_fallbacks_surfaces],
+            n.technique[algos::SbaaCounters::slots_emitted_second_surfaces]);
   EXPECT_EQ(difference(top.color, merge.color, "image"), "");
 }
 
@@ -322,8 +328,9 @@ TEST(Sbaa, SkipsSlotsThatNothingWasWrittenTo) {
     if (pass.name == "gbuffer") const_cast<pipeline::Pass&>(pass).batches.clear();
   const auto e = run_graph(graph);
   const PassCounters n = frame_total(e);
-  EXPECT_GT(n.technique.slots_emitted_surfaces, 0u);
-  EXPECT_EQ(n.technique.slots_empty_surfaces, n.technique.slots_emitted_surfaces);
+  EXPECT_GT(n.technique[algos::SbaaCounters::slots_emitted_surfaces], 0u);
+  EXPECT_EQ(n.technique[algos::SbaaCounters::slots_empty_surfaces],
+            n.technique[algos::SbaaCounters::slots_emitted_surfaces]);
   for (const glm::vec4& p : e.color.pixels) ASSERT_EQ(p, e.color.at(0, 0));
 }
 
@@ -341,9 +348,10 @@ TEST(Sbaa, LastWriterOfASlotWinsAndIsCounted) {
   scene.instances.push_back({1, glm::mat4(1.0f), "again"});
   const auto shared = share(std::move(scene));
   const auto e = run_graph(build_graph("sbaa_top:n=1", shared, kWidth, kHeight));
-  EXPECT_EQ(frame_total(e).technique.slot_conflicts_fragments, static_cast<std::uint64_t>(kWidth * kHeight));
+  EXPECT_EQ(frame_total(e).technique[algos::SbaaCounters::slot_conflicts_fragments],
+            static_cast<std::uint64_t>(kWidth * kHeight));
   const auto clear = run_graph(build_graph("sbaa_top:n=1,id_bits=9", shared, kWidth, kHeight));
-  EXPECT_EQ(frame_total(clear).technique.slot_conflicts_fragments, 0u);
+  EXPECT_EQ(frame_total(clear).technique[algos::SbaaCounters::slot_conflicts_fragments], 0u);
   for (const glm::vec4& p : e.color.pixels) ASSERT_GT(p.y, p.x);
   for (const glm::vec4& p : clear.color.pixels) ASSERT_GT(p.x, p.y);
 }

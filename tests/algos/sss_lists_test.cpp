@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "algos/sss/shaders/counters.h"
 #include "algos/sss/shaders/programs.h"
 #include "algos/sss_scenes.h"
 #include "hwsim/base/diagnostics.h"
@@ -70,8 +71,8 @@ TEST(SssLists, ListsDoNotShowTheOrderOfInsertion) {
         std::string("sss_ppll:mode=or,early_exit=off,list_cap=64,node_bytes=") + node;
     const Emulation a = run(scene, technique);
     const Emulation b = run(std::make_shared<const Scene>(shuffled), technique);
-    EXPECT_GT(counters(a).sss_list_4_to_7_pixels, 0u);
-    EXPECT_EQ(counters(a).sss_truncated_pixels, 0u);
+    EXPECT_GT(counters(a)[algos::SssCounters::sss_list_4_to_7_pixels], 0u);
+    EXPECT_EQ(counters(a)[algos::SssCounters::sss_truncated_pixels], 0u);
     EXPECT_EQ(difference(a.color, b.color, "image"), "") << node;
   }
 }
@@ -80,35 +81,40 @@ TEST(SssLists, FullListsAreCountedAndBoxesAndConservativeRasterAgree) {
   const auto scene = rods();
   const std::string all = "sss_ppll:mode=or,early_exit=off";
   const Emulation whole = run(scene, all);
-  const std::uint64_t stored = counters(whole).sss_stored_fragments;
-  EXPECT_EQ(counters(whole).sss_dropped_fragments, 0u);
+  const std::uint64_t stored = counters(whole)[algos::SssCounters::sss_stored_fragments];
+  EXPECT_EQ(counters(whole)[algos::SssCounters::sss_dropped_fragments], 0u);
   const Emulation little = run(scene, all + ",capacity_nodes=" + std::to_string(stored / 2));
-  EXPECT_EQ(counters(little).sss_stored_fragments, stored / 2);
-  EXPECT_EQ(counters(little).sss_dropped_fragments, stored - stored / 2);
+  EXPECT_EQ(counters(little)[algos::SssCounters::sss_stored_fragments], stored / 2);
+  EXPECT_EQ(counters(little)[algos::SssCounters::sss_dropped_fragments], stored - stored / 2);
   const Emulation raster = run(scene, all + ",conservative=raster");
   EXPECT_EQ(difference(whole.color, raster.color, "image"), "");
-  EXPECT_EQ(counters(raster).sss_stored_fragments, stored);
+  EXPECT_EQ(counters(raster)[algos::SssCounters::sss_stored_fragments], stored);
   const auto fragments = [](const Emulation& e) {
     return total(pass_named(e.trace, "sample")).raster.fragments;
   };
   EXPECT_LT(fragments(raster), fragments(whole));
   const TechniqueCounters n = counters(whole);
-  EXPECT_GT(n.sss_list_1_pixels + n.sss_list_2_to_3_pixels + n.sss_list_4_to_7_pixels +
-                n.sss_list_8_to_15_pixels + n.sss_list_16_to_31_pixels + n.sss_list_from_32_pixels,
-            0u);
+  EXPECT_GT(
+      n[algos::SssCounters::sss_list_1_pixels] + n[algos::SssCounters::sss_list_2_to_3_pixels] +
+          n[algos::SssCounters::sss_list_4_to_7_pixels] + n[algos::SssCounters::sss_list_8_to_15_pixels] +
+          n[algos::SssCounters::sss_list_16_to_31_pixels] + n[algos::SssCounters::sss_list_from_32_pixels],
+      0u);
 }
 
 TEST(SssLists, LongListsAreCutAndCounted) {
   const auto scene = rods();
   const std::string all = "sss_ppll:mode=or,early_exit=off,list_cap=";
   const TechniqueCounters whole = counters(run(scene, all + "64")), one = counters(run(scene, all + "1"));
-  EXPECT_EQ(whole.sss_truncated_pixels, 0u);
-  const std::uint64_t longer = whole.sss_list_2_to_3_pixels + whole.sss_list_4_to_7_pixels +
-                               whole.sss_list_8_to_15_pixels + whole.sss_list_16_to_31_pixels +
-                               whole.sss_list_from_32_pixels;
+  EXPECT_EQ(whole[algos::SssCounters::sss_truncated_pixels], 0u);
+  const std::uint64_t longer = whole[algos::SssCounters::sss_list_2_to_3_pixels] +
+                               whole[algos::SssCounters::sss_list_4_to_7_pixels] +
+                               whole[algos::SssCounters::sss_list_8_to_15_pixels] +
+                               whole[algos::SssCounters::sss_list_16_to_31_pixels] +
+                               whole[algos::SssCounters::sss_list_from_32_pixels];
   EXPECT_GT(longer, 100u);
-  EXPECT_EQ(one.sss_truncated_pixels, longer);
-  EXPECT_EQ(one.sss_list_1_pixels, longer + whole.sss_list_1_pixels);
+  EXPECT_EQ(one[algos::SssCounters::sss_truncated_pixels], longer);
+  EXPECT_EQ(one[algos::SssCounters::sss_list_1_pixels],
+            longer + whole[algos::SssCounters::sss_list_1_pixels]);
 }
 
 // 5.4: where the covered parts add up to the pixel, the frame below shows nothing of itself.
@@ -166,11 +172,11 @@ TEST(SssLists, NodesHideEachOtherPlaceByPlace) {
       "sss_ppll:mode=or,early_exit=off,theta_c=0.01,tri_px=1000,m=8,list_cap=64,node_bytes=";
   const Image truth = run(scene, "ssaa64x").color;
   const Emulation coverage = run(scene, all + "16"), places = run(scene, all + "32");
-  EXPECT_EQ(counters(places).sss_dropped_fragments, 0u);
+  EXPECT_EQ(counters(places)[algos::SssCounters::sss_dropped_fragments], 0u);
   const double by_coverage = rms_difference(coverage.color, truth),
                by_place = rms_difference(places.color, truth);
   EXPECT_LT(by_place, 0.6 * by_coverage) << by_coverage;
-  EXPECT_EQ(counters(places).sss_truncated_pixels, 0u);
+  EXPECT_EQ(counters(places)[algos::SssCounters::sss_truncated_pixels], 0u);
   // A coarser grid's places stand for several.
   const std::string coarse =
       "sss_ppll:mode=or,early_exit=off,theta_c=0.01,tri_px=1000,node_bytes=32,list_cap=64,m=";

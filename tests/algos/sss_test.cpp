@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "algos/sss/classify.h"
+#include "algos/sss/shaders/counters.h"
 #include "algos/sss/shaders/programs.h"
 #include "algos/sss_scenes.h"
 
@@ -41,9 +42,9 @@ TEST(Sss, WithoutCriticalTrianglesTheImageIsThatOfMultisampling) {
     // All of them uncritical in this view: the further passes run and change nothing.
     const Emulation small = run(scene, variant + ":tri_px=0");
     EXPECT_EQ(difference(msaa.color, small.color, "image"), "") << variant;
-    EXPECT_GT(counters(small).sss_tested_primitives, 0u);
-    EXPECT_EQ(counters(small).sss_processed_primitives, 0u);
-    EXPECT_EQ(counters(small).sss_shaded_samples, 0u);
+    EXPECT_GT(counters(small)[algos::SssCounters::sss_tested_primitives], 0u);
+    EXPECT_EQ(counters(small)[algos::SssCounters::sss_processed_primitives], 0u);
+    EXPECT_EQ(counters(small)[algos::SssCounters::sss_shaded_samples], 0u);
   }
 }
 
@@ -84,7 +85,7 @@ TEST(Sss, WeightsOfATrianglesPointsAddUpToItsArea) {
     const Emulation e = frame.run();
     double sum = 0.0, points = 0.0;
     for (const glm::vec4& p : e.color.pixels) sum += p.x;
-    points = static_cast<double>(counters(e).sss_point_samples);
+    points = static_cast<double>(counters(e)[algos::SssCounters::sss_point_samples]);
     const double area = 0.5 * 8 * 4.5, wanted = std::ceil(rho * area);
     EXPECT_EQ(points, std::min(wanted, 72.0)) << rho;
     if (wanted <= 72.0) {
@@ -97,9 +98,11 @@ TEST(Sss, BothPointVariantsGiveTheSameImage) {
   const auto scene = rods();
   const std::string parameters = ":mode=or,hl_px=2,early_exit=off,k_max=48";
   const Emulation gs = run(scene, "sss_gs" + parameters), cs = run(scene, "sss_cs" + parameters);
-  EXPECT_GT(counters(gs).sss_point_samples, 1000u);
-  EXPECT_EQ(counters(gs).sss_point_samples, counters(cs).sss_point_samples);
-  EXPECT_EQ(counters(gs).sss_processed_primitives, counters(cs).sss_processed_primitives);
+  EXPECT_GT(counters(gs)[algos::SssCounters::sss_point_samples], 1000u);
+  EXPECT_EQ(counters(gs)[algos::SssCounters::sss_point_samples],
+            counters(cs)[algos::SssCounters::sss_point_samples]);
+  EXPECT_EQ(counters(gs)[algos::SssCounters::sss_processed_primitives],
+            counters(cs)[algos::SssCounters::sss_processed_primitives]);
   // Half floats: the sums have 11 bits, and so the mean of a pixel half a step of 8 bits, twice.
   double sum = 0.0;
   for (std::size_t i = 0; i < gs.color.pixels.size(); ++i)
@@ -120,7 +123,7 @@ TEST(Sss, AnObjectOfTheBackgroundsColorStaysAsItIs) {
   const Emulation msaa = run(shared, "msaa8x");
   for (const std::string variant : kVariants) {
     const Emulation e = run(shared, variant + ":mode=or,early_exit=off");
-    EXPECT_GT(counters(e).sss_shaded_samples, 100u) << variant;
+    EXPECT_GT(counters(e)[algos::SssCounters::sss_shaded_samples], 100u) << variant;
     EXPECT_LT(largest_difference(msaa.color, e.color), 2.5f / 255.0f) << variant;
   }
 }
@@ -138,7 +141,7 @@ TEST(Sss, NothingBehindTheSceneContributes) {
   const Emulation msaa = run(scene, "msaa8x");
   for (const std::string variant : kVariants) {
     const Emulation e = run(scene, variant + ":mode=or,early_exit=off");
-    EXPECT_GT(counters(e).sss_processed_primitives, 100u) << variant;
+    EXPECT_GT(counters(e)[algos::SssCounters::sss_processed_primitives], 100u) << variant;
     EXPECT_EQ(difference(msaa.color, e.color, "image"), "") << variant;
   }
 }
@@ -155,10 +158,15 @@ TEST(Sss, MarksDoNotCountTrianglesAgain) {
   for (const std::string variant : kVariants) {
     const TechniqueCounters frame = counters(run(scene, variant + ":rest=frame")),
                             others = counters(run(scene, variant));
-    EXPECT_GT(frame.sss_processed_primitives, 0u) << variant;
-    EXPECT_EQ(others.sss_tested_primitives, frame.sss_tested_primitives) << variant;
-    EXPECT_EQ(others.sss_processed_primitives, frame.sss_processed_primitives) << variant;
-    EXPECT_EQ(others.sss_shaded_samples, frame.sss_shaded_samples) << variant;
+    EXPECT_GT(frame[algos::SssCounters::sss_processed_primitives], 0u) << variant;
+    EXPECT_EQ(others[algos::SssCounters::sss_tested_primitives],
+              frame[algos::SssCounters::sss_tested_primitives])
+        << variant;
+    EXPECT_EQ(others[algos::SssCounters::sss_processed_primitives],
+              frame[algos::SssCounters::sss_processed_primitives])
+        << variant;
+    EXPECT_EQ(others[algos::SssCounters::sss_shaded_samples], frame[algos::SssCounters::sss_shaded_samples])
+        << variant;
   }
 }
 
@@ -199,15 +207,15 @@ TEST(Sss, WhatTheEdgeOfAWallHidesStaysHidden) {
   finished->meshes[0].parts = {{0, rod, 0}, {rod, 6, 1}};
   for (const std::string variant : kVariants) {
     const Emulation e = run(finished, variant + ":mode=or,early_exit=off");
-    EXPECT_GT(counters(e).sss_processed_primitives, 100u) << variant;
+    EXPECT_GT(counters(e)[algos::SssCounters::sss_processed_primitives], 100u) << variant;
     EXPECT_EQ(light_of(e.color), 0.0) << variant;
   }
 }
 
 /// Draws triangles whose criticality only their highlights decide.
 std::uint64_t chosen(const std::shared_ptr<const Scene>& scene, const std::string& parameters) {
-  return counters(run(scene, "sss_cs:mode=or,tri_px=0,early_exit=off," + parameters))
-      .sss_processed_primitives;
+  return counters(run(scene, "sss_cs:mode=or,tri_px=0,early_exit=off," +
+                                 parameters))[algos::SssCounters::sss_processed_primitives];
 }
 
 // Width of a highlight, pixels: half the lobe's width over the turn of the normal for a pixel. On a cylinder
@@ -236,12 +244,14 @@ TEST(Sss, EarlyExitLeavesTheHighlights) {
   for (const std::string variant : kVariants) {
     const Emulation off = run(scene, variant + ":mode=or,early_exit=off");
     const Emulation on = run(scene, variant + ":mode=or,early_exit=on");
-    EXPECT_EQ(counters(off).sss_early_exit_primitives, 0u);
-    EXPECT_GT(counters(on).sss_processed_primitives, 0u);
-    EXPECT_LT(counters(on).sss_processed_primitives, counters(off).sss_processed_primitives * 9 / 10)
+    EXPECT_EQ(counters(off)[algos::SssCounters::sss_early_exit_primitives], 0u);
+    EXPECT_GT(counters(on)[algos::SssCounters::sss_processed_primitives], 0u);
+    EXPECT_LT(counters(on)[algos::SssCounters::sss_processed_primitives],
+              counters(off)[algos::SssCounters::sss_processed_primitives] * 9 / 10)
         << variant;
-    EXPECT_EQ(counters(on).sss_processed_primitives + counters(on).sss_early_exit_primitives,
-              counters(off).sss_processed_primitives);
+    EXPECT_EQ(counters(on)[algos::SssCounters::sss_processed_primitives] +
+                  counters(on)[algos::SssCounters::sss_early_exit_primitives],
+              counters(off)[algos::SssCounters::sss_processed_primitives]);
   }
 }
 

@@ -25,10 +25,10 @@ std::string codes(const std::string& text) {
 
 TEST(Technique, EveryEntryHasOneKindAndAnIdThatIsAWord) {
   for (const TechniqueInfo& t : techniques()) {
-    EXPECT_EQ((t.build != nullptr) + (t.modify != nullptr) + (t.filter != nullptr), 1) << t.id;
+    EXPECT_EQ((t.build ? 1 : 0) + (t.modify ? 1 : 0) + (t.filter ? 1 : 0), 1) << t.id;
     EXPECT_EQ(t.id.find_first_of("+:=, "), std::string_view::npos) << t.id;
     for (const TechniqueInfo& other : techniques()) EXPECT_TRUE(&t == &other || t.id != other.id) << t.id;
-    for (const ParameterInfo& p : t.parameters)
+    for (const OptionInfo& p : t.options)
       EXPECT_TRUE(p.default_value >= p.min && p.default_value <= p.max) << t.id << ":" << p.name;
   }
 }

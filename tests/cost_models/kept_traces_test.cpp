@@ -27,6 +27,7 @@ KeptTraces two_runs() {
   first->technique = "a";
   second->technique = "b";
   second->allocated_memory_bytes = 123'456;
+  first->technique_counters = second->technique_counters = {"technique.lit_samples", ""};
   kept.traces = {{run("a"), first}, {run("b"), second}};
   return kept;
 }

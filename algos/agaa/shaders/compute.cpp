@@ -127,7 +127,7 @@ class Clusters {
       }
       exists_[a] = own;
       made = made + select(own, I(1), I(0));
-      s_.count(&TechniqueCounters::agaa_aggregates, own);
+      s_.count(AgaaCounters::agaa_aggregates, own);
     });
     const int bits = u_.code_bits;
     s_.loop(kCodeBlock, u_.samples, s_.valid(), [&](int i) HWY_ATTR {
@@ -136,7 +136,7 @@ class Clusters {
       const auto word = static_cast<std::size_t>(i / 8);
       words_[word] = words_[word] + of * I(1 << (i % 8 * bits));
     });
-    s_.count(&TechniqueCounters::agaa_plane_path_pixels, s_.valid() & covered);
+    s_.count(AgaaCounters::agaa_plane_path_pixels, s_.valid() & covered);
   }
 
   // Equation 1.
@@ -206,7 +206,7 @@ class Clusters {
     });
     exists_[0] = covered_;
     add_distances(0, covered_);
-    s_.count(&TechniqueCounters::agaa_aggregates, covered_);
+    s_.count(AgaaCounters::agaa_aggregates, covered_);
   }
 
   // Sums over the seeds so far; the first sum is the distance to the first seed.
@@ -240,7 +240,7 @@ class Clusters {
       seed_[index] = candidate;
       exists_[index] = apart;
       if (j + 1 < u_.aggregates) add_distances(j, apart);
-      s_.count(&TechniqueCounters::agaa_aggregates, apart);
+      s_.count(AgaaCounters::agaa_aggregates, apart);
     });
   }
 
@@ -293,7 +293,7 @@ class Clusters {
       plane = plane & visible_[n];
       out = max(out, abs(dot(sample_[n].position - sample_[0].position, normal)));
     }
-    s_.count(&TechniqueCounters::agaa_plane_split_pixels, plane & (out * out < across * F(1e-4f)));
+    s_.count(AgaaCounters::agaa_plane_split_pixels, plane & (out * out < across * F(1e-4f)));
   }
 
   S& s_;

@@ -118,7 +118,7 @@ struct GenerateShader {
       const I code = shift_right_by(codes, I(i % 8 * bits)) & I((1 << bits) - 1);
       mixed = mixed | (((shift_right_by(mask, I(i)) & I(1)) != I(0)) & (code != aggregate));
     }
-    s.count(&TechniqueCounters::agaa_mixed_code_fragments, mixed);
+    s.count(AgaaCounters::agaa_mixed_code_fragments, mixed);
   }
 
   template <class S>

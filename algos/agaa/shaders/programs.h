@@ -3,6 +3,7 @@
 #include <array>
 #include <glm/glm.hpp>
 
+#include "algos/agaa/shaders/counters.h"
 #include "hwsim/trace/format.h"
 #include "pipeline/batch/program.h"
 #include "pipeline/shade/lighting.h"

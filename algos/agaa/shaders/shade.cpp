@@ -50,10 +50,10 @@ struct ShadeShader {
         using lanes::saturate;
         const Vec3<F> shown = {saturate(lit.x), saturate(lit.y), saturate(lit.z)};
         color = color + shown * select(occupied, share, F(0.0f));
-        s.count(&TechniqueCounters::lit_samples, occupied);
+        s.count(BaseCounters::lit_samples, occupied);
       });
     });
-    s.count(&TechniqueCounters::lit_samples, !(covered > F(0.0f)));  // as pixels of other techniques count
+    s.count(BaseCounters::lit_samples, !(covered > F(0.0f)));  // as pixels of other techniques count
     const Vec3<F> sky = constant<F>(u.background) * max(F(1.0f) - covered, F(0.0f));
     s.output(0, {color.x + sky.x, color.y + sky.y, color.z + sky.z, F(1.0f)});
   }

@@ -25,7 +25,7 @@ struct ForwardShader {
       s.discard(dropped);
       lit = lit & !dropped;
     }
-    s.count(&TechniqueCounters::lit_samples, lit & s.active());
+    s.count(BaseCounters::lit_samples, lit & s.active());
     const auto position = s.attr3(pipeline::SurfaceVaryings::kPosition);
     const auto surface = lanes::make_surface(material, position, u.lighting.eye);
     const auto color =

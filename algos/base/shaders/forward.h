@@ -1,4 +1,6 @@
 #pragma once
+// Programs of forward shading, and of depth alone.
+#include "algos/base/shaders/counters.h"
 #include "pipeline/batch/program.h"
 #include "pipeline/shade/lighting.h"
 

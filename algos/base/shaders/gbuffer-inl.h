@@ -1,7 +1,7 @@
 // Encoding and decoding of the G-buffer, shared by the passes that write and read it.
 // Per-target include guard, see simd/lanes-inl.h.
 #include <hwy/highway.h>
-#include "algos/base/shaders/deferred.h"
+#include "algos/base/shaders/gbuffer.h"
 #include "pipeline/shade/surface-inl.h"
 #if defined(HWSIM_ALGOS_BASE_SHADERS_GBUFFER_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_ALGOS_BASE_SHADERS_GBUFFER_INL_H_

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algos/base/shaders/deferred.h"
+#include "algos/deferred/shaders/programs.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "algos/deferred/shaders/tile_light.cpp"
@@ -40,7 +40,7 @@ template <GBufferEncoding kEncoding, class S>
 lanes::Vec4<typename S::F> light_at(S& s, const DeferredUniforms& u,
                                     std::span<const pipeline::PointLight> points, typename S::I sample,
                                     typename S::F ox, typename S::F oy) {
-  s.count(&TechniqueCounters::lit_samples, s.valid());
+  s.count(BaseCounters::lit_samples, s.valid());
   const auto g = read_gbuffer<kEncoding>(s, u, s.pixel_x(), s.pixel_y(), sample, ox, oy);
   return light_sample(s, u, points, g, s.valid());
 }

@@ -137,7 +137,7 @@ void remove_surface(S& s, const SbaaAnalysisUniforms& u, Choice<S>& best, PixelS
   s.loop(kModeBlock, u.samples, p.remaining, [&](int i) HWY_ATTR {
     one_mode = one_mode | (aligned[i] & (p.z[i] >= nearest + end) & (p.z[i] <= farthest - end));
   });
-  s.count(&TechniqueCounters::merge_fallbacks_surfaces, p.remaining & !one_mode);
+  s.count(SbaaCounters::merge_fallbacks_surfaces, p.remaining & !one_mode);
   auto left = F(1.0f) < F(0.0f);
   s.loop(kRemoveBlock, u.samples, p.remaining, [&](int i) HWY_ATTR {
     const M taken = aligned[i] & (one_mode | (p.id[i] == best.id));
@@ -162,11 +162,10 @@ void emit_surface(S& s, const SbaaAnalysisUniforms& u, std::size_t slot, const C
                 {to_float(best.id & I(u.id_mask)), to_float(count), F(0.0f), F(0.0f)}, s.valid());
   const auto emitted = s.valid() & (best.count > I(0));
   s.store_buffer(0, record_index(to, s.pixel_x(), s.pixel_y(), I(k)), I(0), emitted);
-  using T = TechniqueCounters;
-  constexpr std::uint64_t T::*kOfSlot[] = {
-      &T::slots_emitted_first_surfaces, &T::slots_emitted_second_surfaces, &T::slots_emitted_third_surfaces,
-      &T::slots_emitted_further_surfaces};
-  s.count(&T::slots_emitted_surfaces, emitted);
+  using T = SbaaCounters;
+  constexpr TechniqueCounter kOfSlot[] = {T::slots_emitted_first_surfaces, T::slots_emitted_second_surfaces,
+                                          T::slots_emitted_third_surfaces, T::slots_emitted_further_surfaces};
+  s.count(T::slots_emitted_surfaces, emitted);
   s.count(kOfSlot[slot < 3 ? slot : 3], emitted);
 }
 

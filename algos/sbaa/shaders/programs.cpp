@@ -102,7 +102,7 @@ struct SbaaGBufferShader {
     I words[8];
     encode_record<kFull>(values, z, words);
     const I first = record_index(u.surfaces, s.pixel_x(), s.pixel_y(), slot);
-    s.count(&TechniqueCounters::slot_conflicts_fragments, s.buffer_nonzero(0, first, accepted));
+    s.count(SbaaCounters::slot_conflicts_fragments, s.buffer_nonzero(0, first, accepted));
     for (int w = 0; w < kRecordWords; ++w) s.store_buffer(0, first + I(w), words[w], accepted);
     int used = kRecordWords;
     if constexpr (!kFull) {
@@ -143,11 +143,11 @@ struct SbaaShadeShader {
         sum = sum + color * share;
         weight = weight + share;
         lit_any = lit_any | found;
-        s.count(&TechniqueCounters::lit_samples, found);
-        s.count(&TechniqueCounters::slots_empty_surfaces, (count > I(0)) & !found);
+        s.count(BaseCounters::lit_samples, found);
+        s.count(SbaaCounters::slots_empty_surfaces, (count > I(0)) & !found);
       });
     });
-    s.count(&TechniqueCounters::lit_samples, !lit_any);
+    s.count(BaseCounters::lit_samples, !lit_any);
     // A pixel whose surfaces were all left empty shows the background, too.
     if (!u.weigh_background) background = select(lit_any, F(0.0f), F(1.0f));
     background = select(weight + background > F(0.0f), background, F(1.0f));

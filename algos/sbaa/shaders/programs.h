@@ -3,7 +3,9 @@
 // that chooses surfaces, their G-buffer records, and the shading of these.
 #include <cmath>
 
-#include "algos/base/shaders/deferred.h"
+#include "algos/base/shaders/gbuffer.h"
+#include "algos/sbaa/shaders/counters.h"
+#include "pipeline/batch/program.h"
 
 namespace hwsim::algos {
 

@@ -37,7 +37,7 @@ class PointThread {
       SurfacePoint<S> point(s_);
       set_gradients(t, c, point);
       s_.loop_each(kSampleBlock, to_int(pattern.count), chosen, [&](int i, M left) HWY_ATTR {
-        s_.count(&TechniqueCounters::sss_point_samples, left);
+        s_.count(SssCounters::sss_point_samples, left);
         add_point(t, c, pattern.weight, pattern_place(pattern, i), left, point);
       });
     });

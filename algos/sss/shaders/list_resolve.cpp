@@ -153,16 +153,16 @@ struct ListResolveShader {
   template <class S, class M>
   static void count_lengths(S& s, typename S::I count, M longer) {
     using I = typename S::I;
-    using T = TechniqueCounters;
+    using T = SssCounters;
     const auto between = [&](int low, int high)
                              HWY_ATTR { return s.active() & (I(low - 1) < count) & (count < I(high + 1)); };
-    s.count(&T::sss_list_1_pixels, between(1, 1));
-    s.count(&T::sss_list_2_to_3_pixels, between(2, 3));
-    s.count(&T::sss_list_4_to_7_pixels, between(4, 7));
-    s.count(&T::sss_list_8_to_15_pixels, between(8, 15));
-    s.count(&T::sss_list_16_to_31_pixels, between(16, 31));
-    s.count(&T::sss_list_from_32_pixels, between(32, kMost));
-    s.count(&T::sss_truncated_pixels, longer);
+    s.count(T::sss_list_1_pixels, between(1, 1));
+    s.count(T::sss_list_2_to_3_pixels, between(2, 3));
+    s.count(T::sss_list_4_to_7_pixels, between(4, 7));
+    s.count(T::sss_list_8_to_15_pixels, between(8, 15));
+    s.count(T::sss_list_16_to_31_pixels, between(16, 31));
+    s.count(T::sss_list_from_32_pixels, between(32, kMost));
+    s.count(T::sss_truncated_pixels, longer);
   }
 };
 

@@ -275,11 +275,11 @@ struct ListShader {
   template <class S, class F>
   static void store_node(S& s, const SssUniforms& u, const NodeData<S>& node, F z, typename S::M seen) {
     using I = typename S::I;
-    using T = TechniqueCounters;
+    using T = SssCounters;
     const I number = s.atomic_add(kSssCounterBuffer, I(0), I(1), seen);
     const auto room = seen & (number < I(u.capacity_nodes));
-    s.count(&T::sss_stored_fragments, room);
-    s.count(&T::sss_dropped_fragments, seen & !room);
+    s.count(T::sss_stored_fragments, room);
+    s.count(T::sss_dropped_fragments, seen & !room);
     const I pixel = s.pixel_y() * I(u.width_px) + s.pixel_x();
     const I next = s.atomic_exchange(kSssHeadBuffer, pixel, number, room);
     const I at = number * I(u.node_words);

@@ -42,7 +42,7 @@ struct PointShader : SssGeometryShader<kVertex, pipeline::GeometryOutput::points
             const F z = b.x * c[0].z + b.y * c[1].z + b.z * c[2].z;
             set_depth_test<I>(u, t, at, z, out);
             s.emit(left, to_clip(u, at, z), std::span<const F>(out));
-            s.count(&TechniqueCounters::sss_point_samples, left);
+            s.count(SssCounters::sss_point_samples, left);
           });
         });
   }

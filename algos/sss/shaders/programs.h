@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "algos/sss/shaders/counters.h"
 #include "pipeline/graph/frame_graph.h"
 #include "pipeline/shade/lighting.h"
 

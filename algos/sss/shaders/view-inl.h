@@ -246,17 +246,17 @@ typename S::M near_highlight(S& s, const SssUniforms& u, const SssTriangle<F>& t
 template <class S, class F>
 typename S::M select_triangles(S& s, const SssUniforms& u, const SssTriangle<F>& t,
                                const SssCorner<F> (&c)[3], typename S::M mask) {
-  using T = TechniqueCounters;
+  using T = SssCounters;
   const auto critical = mask & is_critical(s, u, t, c);
   auto chosen = critical;
   s.branch(kCriticalBlock, critical, [&]() HWY_ATTR {
     if (u.early_exit) chosen = near_highlight(s, u, t, c, critical);
   });
   if (u.counted) {
-    s.count(&T::sss_tested_primitives, mask);
-    s.count(&T::sss_uncritical_primitives, mask & !critical);
-    s.count(&T::sss_early_exit_primitives, critical & !chosen);
-    s.count(&T::sss_processed_primitives, chosen);
+    s.count(T::sss_tested_primitives, mask);
+    s.count(T::sss_uncritical_primitives, mask & !critical);
+    s.count(T::sss_early_exit_primitives, critical & !chosen);
+    s.count(T::sss_processed_primitives, chosen);
   }
   return chosen;
 }
@@ -336,7 +336,7 @@ Vec3<typename S::F> light_point(S& s, const SssUniforms& u, SurfacePoint<S>& poi
       lanes::make_surface(material, point.attr3(pipeline::SurfaceVaryings::kPosition), u.lighting.eye);
   const Vec3<F> c = lanes::occlude_ambient(point, u.lighting, surface,
                                            lanes::light_surface(point, u.lighting, surface, mask));
-  s.count(&TechniqueCounters::sss_shaded_samples, mask);
+  s.count(SssCounters::sss_shaded_samples, mask);
   const F most(u.radiance_max);
   const auto limited = [&](F x) HWY_ATTR { return min(max(x, F(0.0f)), most); };
   return {limited(c.x), limited(c.y), limited(c.z)};

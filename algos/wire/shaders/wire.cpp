@@ -65,7 +65,7 @@ Vec3<F> half_lambert(S& s, const WireUniforms& u, const lanes::Surface<F>& surfa
   lanes::for_each_light(s, u.lighting, points, surface, mask,
                         [&](const Vec3<F>& l, const Vec3<F>& light) HWY_ATTR {
                           const F wrapped = dot(surface.normal, l) * F(0.5f) + F(0.5f);
-                          const F soft = u.options.half_lambert_power == 2 ? wrapped * wrapped : wrapped;
+                          const F soft = u.look.half_lambert_power == 2 ? wrapped * wrapped : wrapped;
                           const Vec3<F> full = lanes::reflect_light(surface, l, u.lighting.model);
                           sum = sum + lerp(surface.albedo * soft, full, share) * light;
                         });
@@ -82,7 +82,7 @@ struct WireShader {
     const F true_px =
         s.attr(WireVaryings::kRadius) / max(s.attr(WireVaryings::kW) * F(u.pixel_scale), F(1e-30f));
     F fade = s.attr(WireVaryings::kFade);
-    if (u.options.fade_per_pixel) fade = min(true_px / F(u.options.width_px), F(1.0f));
+    if (u.look.fade_per_pixel) fade = min(true_px / F(u.look.width_px), F(1.0f));
     auto lit = s.valid();
     if constexpr (kPart != WirePart::all) {
       const auto wide = !(fade < F(1.0f));
@@ -92,11 +92,11 @@ struct WireShader {
     }
     auto material = lanes::sample_material(s, true);
     const Vec3<F> position = s.attr3(V::kPosition);
-    const F share = lanes::saturate((true_px - F(1.0f)) * F(1.0f / (u.options.full_light_px - 1.0f)));
-    if (u.options.flatten) material.normal = flattened(s, u, position, material.normal, share);
+    const F share = lanes::saturate((true_px - F(1.0f)) * F(1.0f / (u.look.full_light_px - 1.0f)));
+    if (u.look.flatten) material.normal = flattened(s, u, position, material.normal, share);
     const auto surface = lanes::make_surface(material, position, u.lighting.eye);
-    const Vec3<F> light = u.options.half_lambert ? half_lambert(s, u, surface, share, lit)
-                                                 : lanes::light_surface(s, u.lighting, surface, lit);
+    const Vec3<F> light = u.look.half_lambert ? half_lambert(s, u, surface, share, lit)
+                                              : lanes::light_surface(s, u.lighting, surface, lit);
     const Vec3<F> c = lanes::occlude_ambient(s, u.lighting, surface, light);
     s.output(0, {c.x, c.y, c.z, material.base.w * fade});
   }
@@ -144,7 +144,7 @@ template <WirePart kPart>
 FragmentProgram describe_wire(void (*run)(FragmentBatch&, const void*)) {
   pipeline::HWY_NAMESPACE::CountFragment counter;
   WireUniforms uniforms;  // with all that the options can ask for
-  uniforms.options.half_lambert = uniforms.options.flatten = uniforms.options.fade_per_pixel = true;
+  uniforms.look.half_lambert = uniforms.look.flatten = uniforms.look.fade_per_pixel = true;
   HWY_NAMESPACE::WireShader<kPart>::run(counter, uniforms);
   FragmentProgram program;
   program.name = "wire";

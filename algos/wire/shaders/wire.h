@@ -1,10 +1,19 @@
 #pragma once
 // Shaders of wire anti-aliasing (techniques 6).
-#include "algos/base/technique.h"
+#include "pipeline/batch/program.h"
 #include "pipeline/shade/lighting.h"
 #include "pipeline/shade/mesh_vertex.h"
 
 namespace hwsim::algos {
+
+/// How wires are lit and faded.
+struct WireLook {
+  float width_px = 1.0f;       ///< least width
+  float full_light_px = 4.0f;  ///< from this width on a wire is lit as any surface
+  bool half_lambert = false, flatten = false;
+  int half_lambert_power = 2;
+  bool fade_per_pixel = false;
+};
 
 struct WireVertexUniforms {
   glm::mat4 clip_from_world{1.0f};
@@ -15,7 +24,7 @@ struct WireVertexUniforms {
 struct WireUniforms {
   pipeline::LightingUniforms lighting;
   float pixel_scale = 0.0f;
-  WireOptions options;
+  WireLook look;
 };
 
 /// Varyings beyond those of surfaces, all of which a wire has.

@@ -1,17 +1,10 @@
 #pragma once
-// G-buffer and deferred lighting (docs/techniques/deferred.md).
-#include <array>
-
-#include "algos/base/shaders/gbuffer_layouts.h"
+// Programs of deferred shading (docs/techniques/deferred.md): G-buffer, classification of pixels, lighting.
+#include "algos/base/shaders/counters.h"
+#include "algos/base/shaders/gbuffer.h"
 #include "pipeline/batch/program.h"
-#include "pipeline/shade/lighting.h"
-#include "pipeline/state/pipeline_state.h"
 
 namespace hwsim::algos {
-
-/// Image slots of lighting passes: the layout's attachments in order, then depth where the encoding has no
-/// position. The shadow map follows them.
-constexpr int depth_slot(GBufferEncoding encoding) { return encoding == GBufferEncoding::record ? -1 : 3; }
 
 struct GBufferUniforms {
   glm::mat4 view_from_world{1.0f};
@@ -20,19 +13,6 @@ struct GBufferUniforms {
 /// Writes the layout's attachments.
 const pipeline::FragmentProgram& gbuffer_program(GBufferEncoding encoding, bool full_varyings,
                                                  bool alpha_test);
-
-struct DeferredUniforms {
-  pipeline::LightingUniforms lighting;
-  glm::mat4 world_from_clip{1.0f};
-  glm::mat4 view_from_clip{1.0f};
-  glm::mat4 view_from_world{1.0f};
-  glm::vec3 background{0.0f};
-  int width = 1, height = 1, samples = 1;
-  std::array<pipeline::SamplePosition, 32> positions{};
-  float normal_dot_min = 0.99f;
-  float z_scale = 1.0f;
-  bool compare_all = false;
-};
 
 /// Discards pixels whose samples are alike by Lauritzen's criteria
 /// (docs/techniques/deferred.md#simple-and-complex).

@@ -1,7 +1,7 @@
-#include "algos/base/shaders/deferred.h"
+#include "algos/deferred/shaders/programs.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "algos/base/shaders/deferred.cpp"
+#define HWY_TARGET_INCLUDE "algos/deferred/shaders/programs.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include "algos/base/shaders/derivatives-inl.h"
@@ -59,7 +59,7 @@ struct DeferredLightShader {
                                 F(static_cast<float>(p.x) * 0.0625f), F(static_cast<float>(p.y) * 0.0625f));
     const std::span points(u.lighting.points.data(), s.loop_count(u.lighting.point_count));
     s.output(0, light_sample(s, u, points, sample, s.valid()));
-    s.count(&TechniqueCounters::lit_samples, s.active());
+    s.count(BaseCounters::lit_samples, s.active());
   }
 };
 

@@ -1,0 +1,50 @@
+#pragma once
+// Options of aggregate G-buffer anti-aliasing.
+#include <cstdint>
+
+#include "algos/agaa/layout.h"
+#include "algos/agaa/shaders/programs.h"
+#include "algos/base/frame_parts.h"
+#include "algos/base/options.h"
+
+namespace hwsim::algos {
+
+enum class AgaaBrdf : std::uint8_t { blinn_phong, ggx };
+enum class AgaaGloss : std::uint8_t { folded, separate };
+enum class AgaaScale : std::uint8_t { world, footprint };      ///< what the length k is measured by
+enum class AgaaMeanNormal : std::uint8_t { unit, raw };        ///< in the search of the first seed
+enum class AgaaSeedSum : std::uint8_t { distances, squares };  ///< by which further seeds are found
+enum class AgaaAccumulate : std::uint8_t { automatic, blend, atomics };
+enum class AgaaPlanePath : std::uint8_t { automatic, on, off };
+enum class AgaaShadowAxis : std::uint8_t { depth, places };
+
+struct AgaaOptions {
+  int aggregates = 2;
+  int samples = 8;
+  double k_m = 0.1;
+  double separation = 0.02;  ///< the t of the paper
+  Ndf ndf = Ndf::toksvig;
+  AgaaBrdf brdf = AgaaBrdf::blinn_phong;
+  DiffuseFilter diffuse = DiffuseFilter::samples;
+  AgaaGloss gloss = AgaaGloss::folded;
+  AgaaScale k_mode = AgaaScale::world;
+  double footprint_px = 8.0;
+  AgaaMeanNormal mean_normal = AgaaMeanNormal::unit;
+  AgaaSeedSum seed_sum = AgaaSeedSum::distances;
+  int shadow_taps = 4;
+  MaskStore mask = MaskStore::natural;
+  bool half_floats = false;
+  bool depth_moments = false;
+  bool light_variance = false;
+  int visible_normals = 8;
+  double gloss_reference = 0.0;  ///< Toksvig's reference exponent; 0: infinite
+  Emulate emulate = Emulate::automatic;
+  AgaaAccumulate accumulate = AgaaAccumulate::automatic;
+  bool centroid = true;
+  AgaaPlanePath plane_path = AgaaPlanePath::automatic;
+  bool alpha_dither = true;
+  AgaaShadowAxis shadow_axis = AgaaShadowAxis::depth;
+};
+void describe(OptionList& list, AgaaOptions& o);
+
+}  // namespace hwsim::algos

@@ -1,0 +1,28 @@
+#pragma once
+// What shaders that read a G-buffer are handed: the slots of its images, the lights and the view.
+#include <array>
+
+#include "algos/base/shaders/gbuffer_layouts.h"
+#include "pipeline/shade/lighting.h"
+#include "pipeline/state/pipeline_state.h"
+
+namespace hwsim::algos {
+
+/// Image slots of lighting passes: the layout's attachments in order, then depth where the encoding has no
+/// position. The shadow map follows them.
+constexpr int depth_slot(GBufferEncoding encoding) { return encoding == GBufferEncoding::record ? -1 : 3; }
+
+struct DeferredUniforms {
+  pipeline::LightingUniforms lighting;
+  glm::mat4 world_from_clip{1.0f};
+  glm::mat4 view_from_clip{1.0f};
+  glm::mat4 view_from_world{1.0f};
+  glm::vec3 background{0.0f};
+  int width = 1, height = 1, samples = 1;
+  std::array<pipeline::SamplePosition, 32> positions{};
+  float normal_dot_min = 0.99f;
+  float z_scale = 1.0f;
+  bool compare_all = false;
+};
+
+}  // namespace hwsim::algos

@@ -1,0 +1,31 @@
+#pragma once
+// Options of deferred shading.
+#include <cstdint>
+
+#include "algos/base/options.h"
+
+namespace hwsim::algos {
+
+/// In the order of gbuffer_layouts().
+enum class DeferredLayout : std::uint8_t { gb_lauritzen, gb_sbaa40, gb_agaa16, gb_20 };
+
+struct DeferredOptions {
+  int samples = 8;
+  DeferredLayout layout = DeferredLayout::gb_lauritzen;
+  bool centroid = true;
+};
+void describe(OptionList& list, DeferredOptions& o);
+
+enum class DeferredLighting : std::uint8_t { stencil, compute_tiles };
+
+struct SimpleComplexOptions {
+  DeferredOptions gbuffer;
+  DeferredLighting lighting = DeferredLighting::stencil;
+  double normal_dot_min = 0.99;
+  double z_scale = 1.0;
+  bool compare_all = false;
+  bool alpha_to_coverage = false;
+};
+void describe(OptionList& list, SimpleComplexOptions& o);
+
+}  // namespace hwsim::algos
