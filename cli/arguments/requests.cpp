@@ -67,9 +67,14 @@ Request request_of(const RunOptions& options) {
 }
 
 RunPlan plan_of(const RunOptions& options) {
+  ConfigFiles files;
+  return plan_of(options, files);
+}
+
+RunPlan plan_of(const RunOptions& options, ConfigFiles& files) {
   std::vector<Diagnostic> problems;
   const Request request = request_with(options, problems);
-  RunPlan plan = make_plan(request, problems);
+  RunPlan plan = make_plan(request, files, problems);
   if (!problems.empty()) throw InputError(problems);
   return plan;
 }

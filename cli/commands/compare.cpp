@@ -52,13 +52,13 @@ std::vector<Variant> variants_of(const CompareOptions& options) {
   return variants;
 }
 
-RunPlan plan_of(const CompareOptions& options, const Variant& variant) {
+RunPlan plan_of(const CompareOptions& options, const Variant& variant, ConfigFiles& files) {
   RunOptions run = options;
   run.view.scene = options.inputs.front();
   run.view.sets = variant.sets;
   run.overlays = variant.overlays;
   run.no_image = true;
-  return plan_of(run);
+  return plan_of(run, files);
 }
 
 class PointRunner {
@@ -95,10 +95,11 @@ class PointRunner {
 std::vector<ComparedResult> simulate(const CompareOptions& options, Context& context) {
   std::vector<Variant> variants = variants_of(options);
   variants.insert(variants.begin(), Variant{});
+  ConfigFiles files;
   std::vector<RunPlan> plans;
   std::vector<Diagnostic> problems;
   for (const Variant& variant : variants) try {
-      plans.push_back(plan_of(options, variant));
+      plans.push_back(plan_of(options, variant, files));
     } catch (const InputError& error) {
       problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
       if (plans.empty()) break;  // the baseline: the variants would repeat its mistakes

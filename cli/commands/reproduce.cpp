@@ -9,8 +9,8 @@
 #include "cost_models/validation.h"
 #include "lab/base/files.h"
 #include "lab/base/messages.h"
+#include "lab/catalog/config_files.h"
 #include "lab/results/scatter_plot.h"
-#include "lab/store/calibration_files.h"
 #include "lab/studies/published_runs.h"
 
 namespace hwsim::cli {
@@ -30,8 +30,7 @@ struct RowAnswer {
 };
 
 /// The parameters of the calibration, or the documented start with wide, unlabeled uncertainty.
-Fit fit_for(const Experiment& experiment, const std::optional<cost_models::Calibration>& calibration,
-            Log& log) {
+Fit fit_for(const Experiment& experiment, const cost_models::Calibration* calibration, Log& log) {
   if (calibration)
     if (auto fit = cost_models::fit_of(*calibration, experiment.parameters)) return *fit;
   log.say(calibration
@@ -47,10 +46,10 @@ class Reproduction {
  public:
   Reproduction(const ReproduceOptions& options, Context& context)
       : options_(options),
-        calibration_(load_calibration()),
+        calibration_(ConfigFiles().calibration()),
         experiment_(load_experiment(published_cells({options.paper}), options.common.jobs, context.log)),
         answers_(experiment_.cells.size()) {
-    const Fit fit = fit_for(experiment_, calibration_, context.log);
+    const Fit fit = fit_for(experiment_, calibration_.get(), context.log);
     const bool known = fit.residual_log_sd > 0.0;
     const double quantile = known ? calibration_->quantile90.at("in_sample") : 0.0;
     predictions_ = cost_models::predict_cells(experiment_, fit, quantile, options.common.jobs);
@@ -212,7 +211,7 @@ class Reproduction {
   }
 
   const ReproduceOptions& options_;
-  std::optional<cost_models::Calibration> calibration_;
+  std::shared_ptr<const cost_models::Calibration> calibration_;
   Experiment experiment_;
   std::vector<RowAnswer> answers_;
   std::vector<HeldOut> predictions_;

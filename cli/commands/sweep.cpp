@@ -67,6 +67,7 @@ class Sweep {
 
   const SweepOptions& options_;
   Context& context_;
+  ConfigFiles files_;
   std::vector<std::unique_ptr<RunPlan>> plans_;
   std::vector<std::unique_ptr<SceneView>> scenes_;
   std::vector<PlannedPoint> points_;
@@ -118,7 +119,7 @@ void Sweep::plan() {
       RunOptions run = options_;
       run.no_image = true;
       for (const Assignment& set : point) run.view.sets.push_back(set.path + "=" + set.value);
-      plans_.push_back(std::make_unique<RunPlan>(plan_of(run)));
+      plans_.push_back(std::make_unique<RunPlan>(plan_of(run, files_)));
       plan_points(*plans_.back(), point);
     } catch (const InputError& error) {
       problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());

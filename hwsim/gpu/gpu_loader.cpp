@@ -9,6 +9,7 @@
 #include "hwsim/config/assign.h"
 #include "hwsim/config/toml_file.h"
 #include "hwsim/gpu/gpu_config.h"
+#include "hwsim/gpu/gpu_files.h"
 #include "hwsim/gpu/gpu_keys.h"
 #include "hwsim/gpu/gpu_rules.h"
 
@@ -50,9 +51,20 @@ std::optional<Provenance> provenance_from_name(std::string_view name) {
   return std::nullopt;
 }
 
-class Loader {
+}  // namespace
+
+class GpuFiles::Loader {
  public:
   explicit Loader(std::string config_dir) : config_dir_(std::move(config_dir)), keys_(keys_of(config_)) {}
+  Loader(const Loader& other)
+      : config_dir_(other.config_dir_),
+        base_path_(other.base_path_),
+        config_(other.config_),
+        keys_(keys_of(config_)),
+        resolved_(other.resolved_),
+        problems_(other.problems_),
+        base_missing_(other.base_missing_) {}
+  Loader& operator=(const Loader&) = delete;
 
   void base(const std::string& id_or_path) {
     const auto path = find(id_or_path, "", {});
@@ -329,8 +341,6 @@ class Loader {
   bool base_missing_ = false;  ///< then missing keys would only repeat the first cause
 };
 
-}  // namespace
-
 std::vector<std::string> list_gpus(const std::string& config_dir) {
   std::vector<std::string> ids;
   std::error_code error;
@@ -340,13 +350,23 @@ std::vector<std::string> list_gpus(const std::string& config_dir) {
   return ids;
 }
 
-GpuConfig load_gpu(const std::string& id_or_path, std::span<const std::string> overlays,
-                   std::span<const Assignment> sets, const std::string& config_dir) {
-  Loader loader(config_dir);
-  loader.base(id_or_path);
-  for (const std::string& path : overlays) loader.overlay(path);
+GpuFiles::GpuFiles(const std::string& id_or_path, std::span<const std::string> overlays,
+                   const std::string& config_dir) {
+  auto loader = std::make_shared<Loader>(config_dir);
+  loader->base(id_or_path);
+  for (const std::string& path : overlays) loader->overlay(path);
+  read_ = std::move(loader);
+}
+
+GpuConfig GpuFiles::with(std::span<const Assignment> sets) const {
+  Loader loader = *read_;
   for (const Assignment& assignment : sets) loader.set(assignment);
   return loader.finish();
+}
+
+GpuConfig load_gpu(const std::string& id_or_path, std::span<const std::string> overlays,
+                   std::span<const Assignment> sets, const std::string& config_dir) {
+  return GpuFiles(id_or_path, overlays, config_dir).with(sets);
 }
 
 }  // namespace hwsim

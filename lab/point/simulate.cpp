@@ -5,13 +5,21 @@
 #include <array>
 #include <chrono>
 
-#include "lab/store/calibration_files.h"
+#include "cost_models/calibration.h"
 
 namespace hwsim::lab {
 namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void add_interval(PointResult& point, const cost_models::Calibration& calibration) {
+  const cost_models::FrameInterval found =
+      cost_models::frame_interval(calibration, point.emulation->trace, *point.gpu,
+                                  algos::technique_text(*point.technique), point.timing.engine);
+  point.timing.support = found.support;
+  point.timing.interval_ns = found.interval_ns;
 }
 
 }  // namespace
@@ -29,8 +37,7 @@ PointResult Simulator::run(const algos::TechniqueChoice& technique, const GpuCon
   point.timing = time_frame(point.emulation->trace, gpu, plan_.engine, plan_.timing);
   point.timing_wall_s = seconds_since(start);
   check_invariants(point.emulation->trace, point.timing, gpu);
-  if (plan_.calibrated)
-    add_interval(point.timing, point.emulation->trace, gpu, algos::technique_text(technique));
+  if (plan_.calibration) add_interval(point, *plan_.calibration);
   if (reference_)
     point.image_error = pipeline::compare(point.emulation->color, reference_->image, &point.flip_map);
   return point;

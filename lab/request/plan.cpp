@@ -6,12 +6,10 @@
 #include <array>
 #include <set>
 
-#include "lab/base/files.h"
 #include "lab/base/messages.h"
 #include "lab/base/text.h"
 #include "lab/catalog/overlays.h"
 #include "lab/request/image_input.h"
-#include "lab/store/calibration_files.h"
 
 namespace hwsim::lab {
 namespace {
@@ -88,10 +86,9 @@ std::vector<algos::TechniqueChoice> plan_techniques(const std::vector<std::strin
 
 std::vector<GpuConfig> plan_gpus(const std::vector<std::string>& names,
                                  const std::vector<std::string>& overlays,
-                                 const std::vector<Assignment>& sets, bool calibrated,
+                                 const std::vector<Assignment>& sets, bool calibrated, ConfigFiles& from,
                                  std::vector<Diagnostic>& problems) {
   std::vector<GpuConfig> gpus;
-  const std::string directory = gpu_directory();
   std::vector<std::string> files;
   for (const std::string& overlay : overlays) try {
       files.push_back(overlay_file(overlay));
@@ -99,7 +96,7 @@ std::vector<GpuConfig> plan_gpus(const std::vector<std::string>& names,
       append(problems, error);
     }
   for (const std::string& name : names) try {
-      gpus.push_back(load_gpu(calibrated ? gpu_file(name) : name, files, sets, directory));
+      gpus.push_back(from.gpu(name, files, sets, calibrated));
     } catch (const InputError& error) {
       append(problems, error);
     }
@@ -152,7 +149,7 @@ std::string skip_text(const pipeline::SkipSwitches& skip) {
   return count == 0 ? "none" : names;
 }
 
-RunPlan make_plan(const Request& request, std::vector<Diagnostic>& problems) {
+RunPlan make_plan(const Request& request, ConfigFiles& files, std::vector<Diagnostic>& problems) {
   const Settings& settings = request.settings;
   RunPlan plan;
   plan.overrides = request.sets;
@@ -162,10 +159,15 @@ RunPlan make_plan(const Request& request, std::vector<Diagnostic>& problems) {
   plan.timing.detailed_sample_ratio = settings.detailed_sample;
   plan.skip = plan_skip(settings.skip, problems);
   plan.techniques = plan_techniques(request.techniques, request.sets, problems);
-  plan.gpus = plan_gpus(request.gpus, request.overlays, request.sets, settings.calibrated, problems);
+  plan.gpus = plan_gpus(request.gpus, request.overlays, request.sets, settings.calibrated, files, problems);
   plan.reference_samples = settings.reference_samples;
   plan.images = settings.images;
   plan.calibrated = settings.calibrated;
+  if (plan.calibrated) try {
+      plan.calibration = files.calibration();
+    } catch (const InputError& error) {
+      append(problems, error);
+    }
   if (is_image_file(plan.view.scene)) check_image_run(plan, problems);
   return plan;
 }
@@ -179,9 +181,9 @@ Settings settings_of(const RunPlan& plan) {
           .images = plan.images};
 }
 
-RunPlan make_plan(const Request& request) {
+RunPlan make_plan(const Request& request, ConfigFiles& files) {
   std::vector<Diagnostic> problems;
-  RunPlan plan = make_plan(request, problems);
+  RunPlan plan = make_plan(request, files, problems);
   if (!problems.empty()) throw InputError(problems);
   return plan;
 }

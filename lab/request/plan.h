@@ -1,5 +1,6 @@
 #pragma once
 // A request with every value decided and every name found, before anything is loaded or drawn.
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "algos/techniques.h"
 #include "hwsim/engines/timing.h"
 #include "hwsim/gpu/gpu_config.h"
+#include "lab/catalog/config_files.h"
 #include "lab/request/request.h"
 #include "pipeline/emulate/emulator.h"
 
@@ -22,14 +24,16 @@ struct RunPlan {
   int reference_samples = 0;  ///< 0: no reference
   bool images = true;
   bool calibrated = true;  ///< fitted numbers and intervals, where there are
+  std::shared_ptr<const cost_models::Calibration> calibration;  ///< null: no intervals
   std::vector<Assignment> overrides;
 };
 
-/// Appends every problem found to `problems`; the plan is complete when there is none.
-RunPlan make_plan(const Request& request, std::vector<Diagnostic>& problems);
+/// Appends every problem found to `problems`; the plan is complete when there is none. GPUs and the
+/// calibration come from `files`, which a lab keeps: a thousand plans read each file once.
+RunPlan make_plan(const Request& request, ConfigFiles& files, std::vector<Diagnostic>& problems);
 
 /// The same, with all problems thrown as one InputError.
-RunPlan make_plan(const Request& request);
+RunPlan make_plan(const Request& request, ConfigFiles& files);
 
 /// What a plan has decided, as the settings of a request.
 Settings settings_of(const RunPlan& plan);

@@ -1,0 +1,43 @@
+#include "lab/catalog/config_files.h"
+
+#include <filesystem>
+
+#include "lab/base/files.h"
+
+namespace hwsim::lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path calibrated_directory() { return fs::path(config_directory()) / "calibrated"; }
+
+/// The calibrated file of a GPU, or its documented one.
+std::string gpu_file(const std::string& name) {
+  const fs::path path = calibrated_directory() / (name + ".toml");
+  std::error_code error;
+  return fs::exists(path, error) ? path.string() : name;
+}
+
+}  // namespace
+
+GpuConfig ConfigFiles::gpu(const std::string& name, const std::vector<std::string>& overlays,
+                           std::span<const Assignment> sets, bool calibrated) {
+  const GpuKey key{name, overlays, calibrated};
+  auto known = gpus_.find(key);
+  if (known == gpus_.end())
+    known = gpus_.emplace(key, GpuFiles(calibrated ? gpu_file(name) : name, overlays, gpu_directory())).first;
+  return known->second.with(sets);
+}
+
+std::shared_ptr<const cost_models::Calibration> ConfigFiles::calibration() {
+  if (calibration_read_) return calibration_;
+  const fs::path path = calibrated_directory() / "calibration.json";
+  std::error_code error;
+  if (fs::exists(path, error))
+    calibration_ = std::make_shared<const cost_models::Calibration>(
+        cost_models::calibration_from_json(read_file(path.string()), path.string()));
+  calibration_read_ = true;
+  return calibration_;
+}
+
+}  // namespace hwsim::lab

@@ -1,0 +1,36 @@
+#pragma once
+// What the configuration folder holds for every run, each file read once for as long as a lab lives: GPUs,
+// and the calibration that `fit` wrote (configs/calibrated).
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "cost_models/calibration.h"
+#include "hwsim/gpu/gpu_files.h"
+
+namespace hwsim::lab {
+
+/// Not for several threads at once.
+class ConfigFiles {
+ public:
+  /// The GPU of an id or a file, with overlay files, and those of `sets` whose group is "gpu".
+  /// `calibrated`: with the fitted values of its calibrated file, where there is one. Throws InputError with
+  /// every problem found.
+  GpuConfig gpu(const std::string& name, const std::vector<std::string>& overlays,
+                std::span<const Assignment> sets, bool calibrated);
+
+  /// config_directory()/calibrated/calibration.json; null when nothing was fitted yet. Throws InputError
+  /// M006.
+  std::shared_ptr<const cost_models::Calibration> calibration();
+
+ private:
+  using GpuKey = std::tuple<std::string, std::vector<std::string>, bool>;
+  std::map<GpuKey, GpuFiles> gpus_;
+  std::shared_ptr<const cost_models::Calibration> calibration_;
+  bool calibration_read_ = false;
+};
+
+}  // namespace hwsim::lab
