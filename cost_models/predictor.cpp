@@ -1,7 +1,5 @@
 #include "cost_models/predictor.h"
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -9,13 +7,14 @@
 #include <thread>
 #include <tuple>
 
+#include "cost_models/jet.h"
 #include "hwsim/gpu/gpu_keys.h"
 #include "hwsim/timing/time_pass.h"
 
 namespace hwsim::cost_models {
 namespace {
 
-using Jet = ceres::Jet<double, kJetWidth>;
+using Jets = Jet<kJetWidth>;
 
 /// Copies a config to another scalar type; `place` says what a key becomes.
 template <class T, class Place>
@@ -37,15 +36,15 @@ GpuValues<T> lift(const GpuConfig& gpu, const Place& place) {
   return lifted;
 }
 
-double seeded(double value, int, double) { return value; }
-Jet seeded(double value, int lane, Jet) {
-  Jet jet(value);
+double seeded(double value, std::size_t, double) { return value; }
+Jets seeded(double value, std::size_t lane, Jets) {
+  Jets jet(value);
   jet.v[lane] = value;  // by the logarithm
   return jet;
 }
 
 double value_of(double t) { return t; }
-double value_of(const Jet& t) { return t.a; }
+double value_of(const Jets& t) { return t.a; }
 
 /// What an evaluation needs to know about one GPU.
 template <class T>
@@ -53,8 +52,7 @@ GpuRates<T> rates_of(const GpuConfig& gpu, const std::vector<Parameter>& paramet
                      const std::vector<std::size_t>& active, std::span<const double> log_values) {
   const auto place = [&](std::string_view key, double value) {
     for (std::size_t lane = 0; lane < active.size(); ++lane)
-      if (parameters[active[lane]].name == key)
-        return seeded(std::exp(log_values[active[lane]]), static_cast<int>(lane), T());
+      if (parameters[active[lane]].name == key) return seeded(std::exp(log_values[active[lane]]), lane, T());
     return T(value);
   };
   return derive_rates<T>(lift<T>(gpu, place));
@@ -167,7 +165,7 @@ void Predictor::collect_passes(const std::vector<bool>& wanted) {
 
 void Predictor::evaluate(std::span<const double> log_values, bool gradients) {
   if (gradients)
-    evaluate_as<Jet>(log_values);
+    evaluate_as<Jets>(log_values);
   else
     evaluate_as<double>(log_values);
 }
@@ -224,7 +222,7 @@ void Predictor::predict(const CellPasses& of, const std::vector<Time>& times,
       if (index >= 0) prediction.gradient[static_cast<std::size_t>(index)] = ns / total;
     };
     for (std::size_t lane = 0; lane < active.size(); ++lane)
-      prediction.gradient[active[lane]] = ms.v[static_cast<Eigen::Index>(lane)] / total;
+      prediction.gradient[active[lane]] = ms.v[lane] / total;
     if (of.presents) set(present.index, present.ns);
     set(f.load_index, by_load);
     set(f.reach_index, by_reach);
@@ -243,11 +241,11 @@ Prediction predict_frame(const WorkTrace& trace, const GpuConfig& gpu, const std
   for (std::size_t first = 0; first == 0 || first < keys.size(); first += kJetWidth) {
     const auto place = [&](std::string_view key, double value) {
       for (std::size_t k = first; k < std::min(keys.size(), first + kJetWidth); ++k)
-        if (keys[k] == key) return seeded(value, static_cast<int>(k - first), Jet());
-      return Jet(value);
+        if (keys[k] == key) return seeded(value, k - first, Jets());
+      return Jets(value);
     };
-    Jet total(0.0);
-    const auto rates = derive_rates<Jet>(lift<Jet>(gpu, place));
+    Jets total(0.0);
+    const auto rates = derive_rates<Jets>(lift<Jets>(gpu, place));
     for (std::size_t p = 0; p < trace.passes.size(); ++p) {
       const PassWork& pass = trace.passes[p];
       const auto time = parted_time(pass, shape_of(pass), rates, pass.barrier_before || p == 0);
@@ -255,7 +253,7 @@ Prediction predict_frame(const WorkTrace& trace, const GpuConfig& gpu, const std
     }
     prediction.ms = total.a * 1e-6;
     for (std::size_t k = first; k < std::min(keys.size(), first + kJetWidth); ++k)
-      prediction.gradient[k] = total.v[static_cast<Eigen::Index>(k - first)] / total.a;
+      prediction.gradient[k] = total.v[k - first] / total.a;
   }
   return prediction;
 }

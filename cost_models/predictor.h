@@ -16,7 +16,7 @@ struct Prediction {
 };
 
 /// Largest number of GPU keys that one replay may depend on: the width of the Jets.
-inline constexpr int kJetWidth = 8;
+inline constexpr std::size_t kJetWidth = 8;
 
 class Predictor {
  public:

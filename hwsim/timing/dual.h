@@ -1,6 +1,6 @@
 #pragma once
 // A value with its derivatives by N parameters: forward automatic differentiation, the least that the
-// engines' templates ask of a scalar. The fit uses Ceres' Jets instead; these need no dependency.
+// engines' templates ask of a scalar. The fit has its own (cost_models/jet.h), with Ceres' rounding.
 #include <array>
 #include <cmath>
 #include <cstddef>

@@ -105,6 +105,9 @@ FlowTable<T> flow_table(const std::vector<ChunkCost<T>>& costs, const std::vecto
   FlowTable<T> table{units.size(), costs.size(), {}, {}, {}, {}};
   const std::vector<T> resident = packets_of_a_fill(costs, &ChunkCost<T>::core_fills),
                        lines_ahead = packets_of_a_fill(costs, &ChunkCost<T>::line_fills);
+  table.packets.reserve(costs.size());
+  for (std::vector<T>* column : {&table.ns, &table.latency_ns, &table.room_packets})
+    column->reserve(costs.size() * units.size());
   for (std::size_t k = 0; k < costs.size(); ++k) {
     const ChunkCost<T>& cost = costs[k];
     // How far a unit may run ahead of the next one that has work: the queue between them, what the cores
