@@ -1,3 +1,5 @@
+#include <malloc.h>
+
 #include <cstdio>
 #include <exception>
 
@@ -78,7 +80,18 @@ ExitStatus run_program(int argc, char** argv) {
   }
 }
 
+/// Each replay takes and frees the same megabytes. By default they go back to the system each time, and come
+/// again as a thousand page faults: half of a sweep's time.
+void keep_freed_memory() {
+  constexpr int kMib = 1 << 20;
+  mallopt(M_MMAP_THRESHOLD, 4 * kMib);
+  mallopt(M_TRIM_THRESHOLD, 64 * kMib);
+}
+
 }  // namespace
 }  // namespace hwsim::cli
 
-int main(int argc, char** argv) { return static_cast<int>(hwsim::cli::run_program(argc, argv)); }
+int main(int argc, char** argv) {
+  hwsim::cli::keep_freed_memory();
+  return static_cast<int>(hwsim::cli::run_program(argc, argv));
+}
