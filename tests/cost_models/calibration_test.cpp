@@ -168,5 +168,52 @@ TEST_F(CalibrationTest, FramesCarryIntervalsThatWidenWithDistance) {
   EXPECT_FALSE(frame_interval(c, *trace, gpu, "t1", Engine::roofline).interval_ns);
 }
 
+/// The calibration whose splits all have the quantile 1; the width of an interval is the logarithm over the
+/// narrowest one.
+class QuantileTest : public CalibrationTest {
+ protected:
+  void SetUp() override {
+    c_ = make_calibration(experiment(), *validation_);
+    for (auto& [split, quantile] : c_.quantile90) quantile = 1.0;
+    gpu_ = calibrated_gpu(experiment().gpus.front(), c_);
+    c_.techniques = {{gpu_.id, {"here"}}, {experiment().gpus.back().id, {"elsewhere"}}};
+  }
+  double width(const std::string& technique) {
+    const FrameInterval i = frame_interval(c_, *trace_, gpu_, technique, Engine::queue);
+    return std::log((*i.interval_ns)[1] / (*i.interval_ns)[0]);
+  }
+  /// How much wider the interval becomes when one split alone has three times the quantile.
+  double widened(const std::string& technique, Split split) {
+    const double before = width(technique);
+    c_.quantile90[std::string(split_name(split))] = 3.0;
+    const double after = width(technique);
+    c_.quantile90[std::string(split_name(split))] = 1.0;
+    return after / before;
+  }
+  Calibration c_;
+  GpuConfig gpu_;
+  std::shared_ptr<const WorkTrace> trace_ = random_trace(4711);
+};
+
+TEST_F(QuantileTest, CalibratedIntervalsAreThoseOfScenesThatTheFitDidNotSee) {
+  for (const Split split : {Split::in_sample, Split::leave_scene_out})
+    EXPECT_NEAR(widened("here", split), 3.0, 1e-9) << split_name(split);
+  for (const Split split : {Split::leave_technique_out, Split::rate_extrapolation, Split::leave_gpu_out})
+    EXPECT_NEAR(widened("here", split), 1.0, 1e-9) << split_name(split);
+}
+
+TEST_F(QuantileTest, InterpolatedIntervalsAreAsWideAsThoseOfGpusThatTheFitDidNotSee) {
+  for (const Split split : {Split::in_sample, Split::leave_scene_out, Split::leave_gpu_out})
+    EXPECT_NEAR(widened("elsewhere", split), 3.0, 1e-9) << split_name(split);
+  for (const Split split : {Split::leave_technique_out, Split::rate_extrapolation})
+    EXPECT_NEAR(widened("elsewhere", split), 1.0, 1e-9) << split_name(split);
+}
+
+TEST_F(QuantileTest, ExtrapolatedIntervalsAreAsWideAsTheWidestSplit) {
+  for (const Split split : {Split::in_sample, Split::leave_scene_out, Split::leave_technique_out,
+                            Split::rate_extrapolation, Split::leave_gpu_out})
+    EXPECT_NEAR(widened("nowhere", split), 3.0, 1e-9) << split_name(split);
+}
+
 }  // namespace
 }  // namespace hwsim::cost_models::test

@@ -1,0 +1,86 @@
+// The points that axes span: grids, zipped lists and Latin hypercubes.
+#include "lab/studies/axes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "hwsim/base/diagnostics.h"
+
+namespace hwsim::lab {
+namespace {
+
+using Points = std::vector<std::vector<Assignment>>;
+
+double number(const Assignment& set) { return std::stod(set.value); }
+
+TEST(Axes, TheLastAxisVariesFastestInAGrid) {
+  const Points points = combine(parse_axes({"gpu.a=1,2", "gpu.b=x,y,z"}), Combine::grid);
+  std::vector<std::string> texts;
+  for (const auto& point : points) texts.push_back(point[0].value + point[1].value);
+  EXPECT_EQ(texts, (std::vector<std::string>{"1x", "1y", "1z", "2x", "2y", "2z"}));
+}
+
+TEST(Axes, ZippedListsGoTogetherAndMustBeOfOneLength) {
+  const Points points = combine(parse_axes({"gpu.a=1,2", "gpu.b=x,y"}), Combine::zip);
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_EQ(points[1][0].value + points[1][1].value, "2y");
+  EXPECT_THROW(combine(parse_axes({"gpu.a=1,2", "gpu.b=x"}), Combine::zip), InputError);
+}
+
+TEST(Axes, LogarithmicRangesHaveEqualRatios) {
+  const Axis axis = parse_axis("gpu.l2_size_kib=256..4096:5:log");
+  EXPECT_EQ(axis.values, (std::vector<std::string>{"256", "512", "1024", "2048", "4096"}));
+}
+
+TEST(LatinHypercube, UsesEachStratumOfEachRangeOnce) {
+  constexpr int kPoints = 64;
+  const std::vector<Axis> axes = parse_axes({"gpu.a=2..10", "gpu.b=1..1024:2:log"});
+  for (const std::uint64_t seed : {1u, 2u, 12345u}) {
+    const Points points = latin_hypercube(axes, kPoints, seed);
+    ASSERT_EQ(points.size(), std::size_t{kPoints});
+    std::set<int> linear, logarithmic;
+    for (const auto& point : points) {
+      ASSERT_EQ(point.size(), 2u);
+      linear.insert(static_cast<int>((number(point[0]) - 2.0) / 8.0 * kPoints));
+      logarithmic.insert(static_cast<int>(std::log2(number(point[1])) / 10.0 * kPoints));
+    }
+    for (const std::set<int>& strata : {linear, logarithmic}) {
+      EXPECT_EQ(strata.size(), std::size_t{kPoints}) << "seed " << seed;
+      EXPECT_EQ(*strata.begin(), 0);
+      EXPECT_EQ(*strata.rbegin(), kPoints - 1);
+    }
+  }
+}
+
+TEST(LatinHypercube, TakesEachValueOfAListEquallyOften) {
+  const Points points = latin_hypercube(parse_axes({"gpu.a=x,y,z"}), 12, 7);
+  std::map<std::string, int> count;
+  for (const auto& point : points) ++count[point[0].value];
+  EXPECT_EQ(count, (std::map<std::string, int>{{"x", 4}, {"y", 4}, {"z", 4}}));
+}
+
+TEST(LatinHypercube, FollowsItsSeed) {
+  const std::vector<Axis> axes = parse_axes({"gpu.a=0..1", "gpu.b=0..1"});
+  const auto text = [&](std::uint64_t seed) {
+    std::string joined;
+    for (const auto& point : latin_hypercube(axes, 8, seed))
+      for (const Assignment& set : point) joined += set.value + " ";
+    return joined;
+  };
+  EXPECT_EQ(text(1), text(1));
+  EXPECT_NE(text(1), text(2));
+}
+
+TEST(LatinHypercube, ShufflesTheAxesIndependently) {
+  const Points points = latin_hypercube(parse_axes({"gpu.a=0..1", "gpu.b=0..1"}), 32, 1);
+  int same = 0;
+  for (const auto& point : points)
+    same += static_cast<int>(number(point[0]) * 32) == static_cast<int>(number(point[1]) * 32);
+  EXPECT_LT(same, 16) << "the points do not lie on the diagonal";
+}
+
+}  // namespace
+}  // namespace hwsim::lab

@@ -1,0 +1,78 @@
+// What a budget says of a technique: each word, at the limit and on both sides of it.
+#include "lab/studies/budget.h"
+
+#include <gtest/gtest.h>
+
+#include "hwsim/base/diagnostics.h"
+
+namespace hwsim::lab {
+namespace {
+
+/// 2 ms a frame, of which 1 ms is anti-aliasing, with an interval of frame_ms from 1.6 to 3.
+Costs two_milliseconds() {
+  Costs costs;
+  costs.frame_ms = 2.0;
+  costs.aa_ms = 1.0;
+  costs.memory_mib = 100.0;
+  costs.extra_mib = 40.0;
+  costs.dram_mb = 500.0;
+  costs.interval_ms = {1.6, 3.0};
+  return costs;
+}
+
+std::string verdict_of(const std::string& budget, const Costs& costs = two_milliseconds()) {
+  return std::string(verdict(costs, parse_budget(budget)));
+}
+
+TEST(Budget, EveryTechniqueIsWithinNoBudget) { EXPECT_EQ(verdict_of("frame_ms<=1000"), "ok"); }
+
+TEST(Budget, TimeIsOkWhereTheWholeIntervalIsWithinTheLimit) {
+  EXPECT_EQ(verdict_of("frame_ms<=3"), "ok");
+  EXPECT_EQ(verdict_of("frame_ms<=3.1"), "ok");
+}
+
+TEST(Budget, TimeIsAtRiskWhereTheLimitLiesInsideTheInterval) {
+  EXPECT_EQ(verdict_of("frame_ms<=2.9"), "at risk") << "the value is within, the upper end is not";
+  EXPECT_EQ(verdict_of("frame_ms<=1.7"), "at risk") << "the value is beyond, the lower end is not";
+  EXPECT_EQ(verdict_of("frame_ms<=1.6"), "at risk");
+}
+
+TEST(Budget, TimeIsOverWhereTheWholeIntervalIsBeyondTheLimit) {
+  EXPECT_EQ(verdict_of("frame_ms<=1.5"), "over time");
+}
+
+TEST(Budget, CostOfAntiAliasingHasTheIntervalOfTheFrameAroundIt) {
+  EXPECT_EQ(verdict_of("aa_ms<=2"), "ok") << "1 ms and 1 ms above";
+  EXPECT_EQ(verdict_of("aa_ms<=1.9"), "at risk");
+  EXPECT_EQ(verdict_of("aa_ms<=0.7"), "at risk") << "1 ms and 0.4 ms below";
+  EXPECT_EQ(verdict_of("aa_ms<=0.5"), "over time");
+}
+
+TEST(Budget, TimeWithoutAnIntervalIsNeverAtRisk) {
+  Costs costs = two_milliseconds();
+  costs.interval_ms.reset();
+  EXPECT_EQ(verdict_of("frame_ms<=2", costs), "ok");
+  EXPECT_EQ(verdict_of("frame_ms<=1.99", costs), "over time");
+}
+
+TEST(Budget, MemoryIsCountedAndHasNoInterval) {
+  for (const char* within : {"memory_mib<=100", "extra_mib<=40", "dram_mb<=500"})
+    EXPECT_EQ(verdict_of(within), "ok") << within;
+  for (const char* beyond : {"memory_mib<=99", "extra_mib<=39", "dram_mb<=499"})
+    EXPECT_EQ(verdict_of(beyond), "over memory") << beyond;
+}
+
+TEST(Budget, TheGravestWordIsSaid) {
+  EXPECT_EQ(verdict_of("frame_ms<=1, memory_mib<=1"), "over memory");
+  EXPECT_EQ(verdict_of("frame_ms<=2.5, aa_ms<=0.1"), "over time");
+  EXPECT_EQ(verdict_of("frame_ms<=2.5, memory_mib<=100"), "at risk");
+}
+
+TEST(Budget, AnythingButQuantityAndNumberIsRefused) {
+  for (const char* text :
+       {"", "frame_ms", "frame_ms<3", "frame_ms<=", "frame_ms<=x", "frame_ms<=inf", "frame_ms<=nan", "ms<=3"})
+    EXPECT_THROW(parse_budget(text), InputError) << text;
+}
+
+}  // namespace
+}  // namespace hwsim::lab

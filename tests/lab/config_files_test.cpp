@@ -1,0 +1,66 @@
+// Files of the configuration folder, read once for a lab.
+#include "lab/catalog/config_files.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "hwsim/base/diagnostics.h"
+#include "lab/base/files.h"
+
+namespace hwsim::lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(ConfigFiles, GiveWhatLoadingAloneGives) {
+  ConfigFiles files;
+  const std::vector<Assignment> sets = {{"gpu.l2_size_kib", "1024"}, {"scene.shadows", "false"}};
+  for (const char* name : {"gtx980", "hd7650m"}) {
+    const GpuConfig plain = load_gpu(name, {}, {}, gpu_directory());
+    const GpuConfig changed = load_gpu(name, {}, sets, gpu_directory());
+    EXPECT_EQ(show(files.gpu(name, {}, sets, false), true), show(changed, true));
+    EXPECT_EQ(show(files.gpu(name, {}, {}, false), true), show(plain, true))
+        << "settings of one plan do not reach the next";
+  }
+}
+
+TEST(ConfigFiles, FittedNumbersAreTakenWhereAskedFor) {
+  ConfigFiles files;
+  ASSERT_NE(files.calibration(), nullptr);
+  const GpuConfig fitted = files.gpu("gtx980", {}, {}, true), documented = files.gpu("gtx980", {}, {}, false);
+  EXPECT_NE(content_hash(fitted), content_hash(documented));
+  EXPECT_EQ(fitted.id, documented.id);
+}
+
+TEST(ConfigFiles, ReadAFileOnce) {
+  const fs::path path = fs::path(::testing::TempDir()) / "hwsim_read_once.toml";
+  std::ofstream(path)
+      << "schema = 1\nkind = \"gpu\"\nid = \"mine\"\nextends = \"gtx980\"\nl2_size_kib = 512\n";
+  ConfigFiles files;
+  EXPECT_EQ(files.gpu(path.string(), {}, {}, true).l2_size_kib, 512.0);
+  fs::remove(path);
+  const std::vector<Assignment> sets = {{"gpu.dram_bandwidth_gb_s", "100"}};
+  const GpuConfig again = files.gpu(path.string(), {}, sets, true);
+  EXPECT_EQ(again.l2_size_kib, 512.0);
+  EXPECT_EQ(again.dram_bandwidth_gb_s, 100.0);
+  EXPECT_EQ(files.calibration(), files.calibration()) << "one calibration, not a copy for each question";
+}
+
+TEST(ConfigFiles, MistakesInFilesAndSettingsAreReportedTogetherEachTime) {
+  const fs::path path = fs::path(::testing::TempDir()) / "hwsim_mistakes.toml";
+  std::ofstream(path) << "schema = 1\nkind = \"gpu\"\nextends = \"gtx980\"\nno_such_key = 1\n";
+  ConfigFiles files;
+  const std::vector<Assignment> sets = {{"gpu.neither_this", "1"}};
+  for (int time = 0; time < 2; ++time) try {
+      files.gpu(path.string(), {}, sets, true);
+      ADD_FAILURE() << "accepted";
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.diagnostics().size(), 2u);
+    }
+  fs::remove(path);
+}
+
+}  // namespace
+}  // namespace hwsim::lab

@@ -1,0 +1,120 @@
+// The database of a sweep: what is kept, and what a merge takes over.
+#include "lab/studies/sweep_store.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "hwsim/base/diagnostics.h"
+
+namespace hwsim::lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SweepStoreTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) /
+              (std::string("hwsim_sweep_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  static SweepPoint point(const std::string& id, std::int64_t number) {
+    SweepPoint p;
+    p.id = id;
+    p.number = number;
+    p.scene = "sponza_hall";
+    p.technique = "fxaa";
+    p.gpu = "gtx980";
+    p.engine = "queue";
+    p.settings = {{"gpu.l2_size_kib", id}};
+    return p;
+  }
+
+  static PointResult result(double time_ns) {
+    PointResult r;
+    r.emulation = std::make_shared<pipeline::Emulation>();
+    r.timing.time_ns = time_ns;
+    PassTiming pass;
+    pass.name = "draw";
+    pass.time_ns = time_ns;
+    r.timing.passes = {pass};
+    return r;
+  }
+
+  /// A database with these points, of which those with a time are done.
+  void make(const std::string& name, const std::vector<std::pair<std::string, double>>& points) {
+    SweepStore store(path(name), false);
+    std::vector<SweepPoint> planned;
+    for (const auto& [id, time_ns] : points)
+      planned.push_back(point(id, static_cast<std::int64_t>(planned.size()) + 1));
+    store.add(planned);
+    for (const auto& [id, time_ns] : points)
+      if (time_ns > 0.0) store.finish(id, result(time_ns));
+  }
+
+  /// Milliseconds of each point by its id; -1 where it is not done.
+  static std::map<std::string, double> times(SweepStore& store) {
+    const Table table = store.points();
+    std::map<std::string, double> found;
+    for (const auto& row : table.rows) {
+      const Real* time = std::get_if<Real>(&row.at(9));
+      found[std::get<std::string>(row.at(1))] = time ? time->value : -1.0;
+    }
+    return found;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(SweepStoreTest, MergeTakesOverWhatIsDoneThereAndNotHere) {
+  make("a.db", {{"p1", 1e6}, {"p2", 0.0}, {"p3", 0.0}});
+  make("b.db", {{"p1", 9e6}, {"p2", 2e6}, {"p3", 0.0}, {"p4", 4e6}});
+  SweepStore a(path("a.db"), true);
+  EXPECT_EQ(a.merge(path("b.db")), 2u) << "p2 and p4";
+  EXPECT_EQ(times(a), (std::map<std::string, double>{{"p1", 1.0}, {"p2", 2.0}, {"p3", -1.0}, {"p4", 4.0}}))
+      << "what was done here stays as it was";
+  EXPECT_EQ(a.count("done"), 3u);
+  EXPECT_EQ(a.count("pending"), 1u);
+}
+
+TEST_F(SweepStoreTest, MergingTheSameAgainChangesNothing) {
+  make("a.db", {{"p1", 1e6}});
+  make("b.db", {{"p2", 2e6}});
+  SweepStore a(path("a.db"), true);
+  EXPECT_EQ(a.merge(path("b.db")), 1u);
+  EXPECT_EQ(a.merge(path("b.db")), 0u);
+  EXPECT_EQ(a.count("done"), 2u);
+}
+
+TEST_F(SweepStoreTest, MergedPartsOfASweepEqualTheWhole) {
+  make("whole.db", {{"p1", 1e6}, {"p2", 2e6}, {"p3", 3e6}});
+  make("1.db", {{"p1", 1e6}, {"p2", 0.0}, {"p3", 0.0}});
+  make("2.db", {{"p1", 0.0}, {"p2", 2e6}, {"p3", 3e6}});
+  SweepStore merged(path("1.db"), true), whole(path("whole.db"), true);
+  merged.merge(path("2.db"));
+  EXPECT_EQ(to_csv(merged.points()), to_csv(whole.points()));
+}
+
+TEST_F(SweepStoreTest, MergeOfAFileThatIsNotThereIsRefused) {
+  make("a.db", {{"p1", 1e6}});
+  SweepStore a(path("a.db"), true);
+  EXPECT_THROW(a.merge(path("none.db")), InputError);
+  EXPECT_FALSE(fs::exists(path("none.db"))) << "a look leaves no file";
+}
+
+TEST_F(SweepStoreTest, PointsThatAKilledProcessLeftAreInterrupted) {
+  make("a.db", {{"p1", 0.0}});
+  SweepStore(path("a.db"), true).start("p1");
+  SweepStore a(path("a.db"), true);
+  a.add({point("p1", 1)});
+  EXPECT_EQ(a.state_of("p1"), "interrupted");
+}
+
+}  // namespace
+}  // namespace hwsim::lab
