@@ -54,7 +54,7 @@ struct FoldOptimum {
 
 struct Validation {
   Fit fit;                          ///< to all cells
-  std::vector<FoldOptimum> optima;  ///< of every fit
+  std::vector<FoldOptimum> optima;  ///< optimum of every fit
   std::vector<SplitResult> splits;
   std::map<std::string, Figures> papers, gpus;  ///< in sample
   double shaded_samples_mape_pct = 0.0, memory_worst_pct = 0.0;

@@ -106,7 +106,7 @@ class Builder {
     Pass& pass = add_geometry_pass("visibility");
     pass.color = {normal_};
     pass.batches.push_back(visibility_batch(parts_.draws.opaque, false));
-    std::vector<DrawCall> alpha = parts_.draws.mask;  // alpha is coverage (techniques 4.7)
+    std::vector<DrawCall> alpha = parts_.draws.mask;  // alpha is coverage (docs/techniques/agaa.md#alpha)
     alpha.insert(alpha.end(), parts_.draws.blend.begin(), parts_.draws.blend.end());
     if (!alpha.empty()) pass.batches.push_back(visibility_batch(alpha, true));
   }

@@ -46,10 +46,10 @@ struct ForwardTarget {
   pipeline::ImageId color, depth;
   int width = 0, height = 0, samples = 1;
   bool centroid = false, sample_rate = false;
-  int coverage_samples = 0;   ///< more than `samples`: with a coverage map (techniques 1.6)
+  int coverage_samples = 0;   ///< more than `samples`: with a coverage map (docs/techniques/forward.md)
   bool drop_orphans = false;  ///< see Pass::drop_orphans
   glm::vec2 jitter_px{0.0f};  ///< samples move by this (x right, y down), so geometry moves against it
-  /// Of the layers of a multicast target; no viewports: one layer, standard positions.
+  /// The layers of a multicast target; no viewports: one layer, standard positions.
   pipeline::MulticastPattern layers;
 };
 
@@ -63,7 +63,7 @@ class SeparateDraws {
   /// The draw as it stands in DrawLists::separate: its triangles may be another list.
   virtual pipeline::DrawCall prepare(const pipeline::Scene& scene, const pipeline::Camera& camera,
                                      pipeline::DrawCall call) const = 0;
-  /// Of their pass, after the base's prefix.
+  /// The name of their pass, after the base's prefix.
   virtual std::string pass_name() const = 0;
   /// Into lit color, with the depth of what is opaque.
   virtual std::vector<pipeline::DrawBatch> batches(const FrameParts& parts,
@@ -124,7 +124,7 @@ pipeline::Pass& add_full_screen(pipeline::FrameGraph& graph, const std::string& 
 /// The final image: rgba8_srgb, 1x.
 pipeline::ImageId add_output(pipeline::FrameGraph& graph);
 
-/// Camera matrix with sub-pixel jitter (techniques 1.2).
+/// Camera matrix with sub-pixel jitter (docs/techniques/forward.md#supersampling).
 glm::mat4 jittered(const glm::mat4& clip_from_world, glm::vec2 jitter_px, int width, int height);
 
 pipeline::PipelineState opaque_state(const ForwardTarget& target);

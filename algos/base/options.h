@@ -67,7 +67,7 @@ class OptionList {
   std::vector<BoundOption> options_;
 };
 
-/// Of a technique that has none.
+/// The options of a technique that has none.
 struct NoOptions {};
 inline void describe(OptionList&, NoOptions&) {}
 

@@ -32,7 +32,7 @@ struct FrameRequest {
   int width_px = 1280, height_px = 720;
   int camera = 0;             ///< index into Scene::cameras
   int point_lights = 0;       ///< 0..1024 seeded point lights added to those of the scene
-  double light_range = 0.15;  ///< of the lights added: over the scene's diagonal
+  double light_range = 0.15;  ///< reach of the lights added, as a part of the scene's diagonal
   LightProfile lights = LightProfile::scene;
   bool shadows = true;  ///< a shadow map for the scene's shadow caster
   int shadow_map_px = 2048;
@@ -53,7 +53,7 @@ struct TechniqueInfo {
   std::string_view id;  ///< "msaa4x"
   std::string_view description;
   Options defaults{NoOptions{}};
-  std::vector<OptionInfo> options = {};  ///< of `defaults`, in the order in which users see them
+  std::vector<OptionInfo> options = {};  ///< what describes `defaults`, in the order in which users see them
   std::function<pipeline::FrameGraph(const FrameRequest& request, const Options& options)> build = nullptr;
   std::function<void(FrameRequest& request, const Options& options)> modify = nullptr;
   /// Returns the filtered image; both hold sRGB codes, one sample a pixel (filters/filters.h).
@@ -128,7 +128,7 @@ struct MessageCode {
 struct Room {
   std::vector<TechniqueInfo> techniques = {};
   std::span<const DeclaredCounter> counters = {};
-  std::span<const CounterLaw> laws = {};      ///< of these counters, in every pass
+  std::span<const CounterLaw> laws = {};      ///< what these counters obey in every pass
   std::vector<TechniqueCounter> shaded = {};  ///< those that count into a frame's shaded samples
   std::span<const MessageCode> codes = {};
 };

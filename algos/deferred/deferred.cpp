@@ -46,7 +46,8 @@ DrawBatch gbuffer_batch(const FrameParts& parts, const GBuffer& g, const std::ve
 }
 
 void add_gbuffer_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g) {
-  // Normals are cleared to a valid code, so that no pass decodes a NaN (techniques 2.3).
+  // Normals are cleared to a valid code, so that no pass decodes a NaN
+  // (docs/techniques/deferred.md#simple-and-complex).
   std::vector<ImageId> cleared = g.attachments;
   cleared.push_back(g.depth);
   graph.add_clear("clear", std::move(cleared));
@@ -124,7 +125,8 @@ void add_classify_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer
 
 /// Shaders cannot write single samples of a multisampled image (D3D11, GL): the tiles write a buffer of
 /// samples, as in Lauritzen's program, and a full-screen pass at sample rate brings it to the render target.
-/// With layout=gb_lauritzen that makes the 40 bytes a sample of SBAA's reference (techniques 3.6 b).
+/// With layout=gb_lauritzen that makes the 40 bytes a sample of SBAA's reference
+/// (docs/techniques/deferred.md#g-buffers).
 void add_tile_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
                    std::shared_ptr<const void> uniforms) {
   const ImageId samples =
@@ -138,7 +140,7 @@ void add_tile_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
   copy.color = {g.lit};
   copy.sampled = {samples};
   copy.fragment = &copy_samples_program();
-  copy.uniforms = std::make_shared<int>();  // of which the program reads nothing
+  copy.uniforms = std::make_shared<int>();  // the program reads nothing of it
   copy.state.raster.sample_rate = true;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Deferred shading of a multisampled G-buffer (techniques 2): every sample lit, or samples only where they
-// differ.
+// Deferred shading of a multisampled G-buffer (docs/techniques/deferred.md): every sample lit, or samples
+// only where they differ.
 #include "algos/base/technique.h"
 
 namespace hwsim::algos {

@@ -1,4 +1,4 @@
-// AXAA: FXAA with three rules (techniques 7.2).
+// AXAA: FXAA with three rules (docs/techniques/filters.md#axaa).
 #include "algos/filters/filters.h"
 #include "algos/filters/fxaa.h"
 

@@ -1,5 +1,5 @@
-// CMAA, first version: locally dominant edges, simple shapes and long Z shapes (techniques 7.4). Works in
-// place.
+// CMAA, first version: locally dominant edges, simple shapes and long Z shapes
+// (docs/techniques/filters.md#cmaa). Works in place.
 #include "algos/filters/shaders/cmaa.h"
 #include "algos/base/frame_parts.h"
 #include "algos/filters/filters.h"

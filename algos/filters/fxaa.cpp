@@ -10,7 +10,7 @@ namespace hwsim::algos {
 namespace {
 using namespace pipeline;
 
-// Pixels added at each step of the search, presets 10 to 15, 20 to 29, 39 (techniques 7.1).
+// Pixels added at each step of the search, presets 10 to 15, 20 to 29, 39 (docs/techniques/filters.md#fxaa).
 struct Preset {
   int steps;
   std::array<float, kMaxFxaaSteps> step_px;

@@ -1,5 +1,5 @@
 #pragma once
-// Options and passes of FXAA, which AXAA shares (techniques 7.1, 7.2).
+// Options and passes of FXAA, which AXAA shares (docs/techniques/filters.md#fxaa).
 #include <cstdint>
 #include <string>
 

@@ -1,4 +1,4 @@
-// MLAA on a GPU: edges, lengths of their runs, blending (techniques 7.5).
+// MLAA on a GPU: edges, lengths of their runs, blending (docs/techniques/filters.md#mlaa).
 #include "algos/filters/shaders/mlaa.h"
 #include "algos/base/frame_parts.h"
 #include "algos/filters/filters.h"

@@ -1,4 +1,4 @@
-// SMAA 1x: edges, blending weights, blending (techniques 7.3).
+// SMAA 1x: edges, blending weights, blending (docs/techniques/filters.md#smaa).
 #include <array>
 
 #include "algos/base/frame_parts.h"

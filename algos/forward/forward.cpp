@@ -22,7 +22,7 @@ void build_ordered(FrameGraph& graph, const FrameParts& parts, int factor) {
 }
 
 // Variant C: jittered frames, summed in floats: fp16 loses increments beyond 2048 samples, and rounds before
-// (techniques 1.2).
+// (docs/techniques/forward.md#supersampling).
 void build_accumulated(FrameGraph& graph, const FrameParts& parts, int factor) {
   ForwardTarget target = make_forward_target(graph, "frame", graph.width(), graph.height(), 1);
   const ImageId sum =
@@ -51,8 +51,8 @@ void build_multisampled(FrameGraph& graph, const FrameParts& parts, int samples,
   graph.add_resolve("resolve", target.color, add_output(graph));
 }
 
-// Layers of eight samples under shifted viewports (techniques 1.4); no resolve mixes layers, so a shader
-// does.
+// Layers of eight samples under shifted viewports (docs/techniques/forward.md#multicast); no resolve mixes
+// layers, so a shader does.
 void build_multicast(FrameGraph& graph, const FrameParts& parts, int samples, bool centroid,
                      const MulticastPattern& layers) {
   ForwardTarget target = make_forward_target(graph, "multisampled", graph.width(), graph.height(), samples,
@@ -63,7 +63,7 @@ void build_multicast(FrameGraph& graph, const FrameParts& parts, int samples, bo
                   std::make_shared<MergeUniforms>(MergeUniforms{samples}));
 }
 
-/// Samples and positions of coverage (techniques 1.6).
+/// Samples and positions of coverage (docs/techniques/forward.md#coverage-sampling).
 struct CoverageMode {
   int samples, coverage_samples;
 };
@@ -137,11 +137,11 @@ FrameGraph build_many_samples(const FrameRequest& request, const ManySamplesOpti
 }
 
 FrameGraph build_csaa(const FrameRequest& request, const CsaaOptions& options) {
-  constexpr CoverageMode kModes[] = {{4, 8}, {8, 8}, {4, 16}, {8, 16}};  // of CsaaMode
+  constexpr CoverageMode kModes[] = {{4, 8}, {8, 8}, {4, 16}, {8, 16}};  // in the order of CsaaMode
   return build_coverage(request, options.coverage, kModes[static_cast<std::size_t>(options.mode)]);
 }
 FrameGraph build_eqaa(const FrameRequest& request, const EqaaOptions& options) {
-  constexpr CoverageMode kModes[] = {{2, 4}, {4, 8}, {8, 16}};  // of EqaaMode
+  constexpr CoverageMode kModes[] = {{2, 4}, {4, 8}, {8, 16}};  // in the order of EqaaMode
   return build_coverage(request, options.coverage, kModes[static_cast<std::size_t>(options.mode)]);
 }
 

@@ -22,7 +22,7 @@ struct SssFrame {
   FrameParts parts;
   ForwardTarget base;
   std::vector<CriticalDraw> critical;
-  pipeline::ImageId below;   ///< of the composite: the frame, resolved or, with marks, not
+  pipeline::ImageId below;   ///< what the composite lies over: the frame, resolved or, with marks, not
   pipeline::ImageId marks;   ///< samples of the frame whose triangle is sampled; none: nothing asks
   bool over_others = false;  ///< the composite takes the samples without a mark for the rest
   SssUniforms uniforms;

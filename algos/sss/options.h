@@ -1,5 +1,6 @@
 #pragma once
-// Options of selective supersampling: those that its three variants share (techniques 5.6), and their own.
+// Options of selective supersampling: those that its three variants share
+// (docs/techniques/sss.md#parameters), and their own.
 #include <cstdint>
 
 #include "algos/base/options.h"
@@ -21,7 +22,7 @@ struct SssOptions {
   double samples_min = 4.0;
   double samples_max = 64.0;
   double border_share = 0.25;
-  double depth_bias_steps = 2.0;  ///< of 24-bit depth
+  double depth_bias_steps = 2.0;  ///< steps of 24-bit depth
   double depth_slope = 0.1;
   SssShading shading = SssShading::scene;
   SssRest rest = SssRest::others;

@@ -1,6 +1,6 @@
 #pragma once
-// Selective shader supersampling (techniques 5): 8x multisampling, and further samples on the few triangles
-// whose highlights it would tear into beads.
+// Selective shader supersampling (docs/techniques/sss.md): 8x multisampling, and further samples on the few
+// triangles whose highlights it would tear into beads.
 #include "algos/base/technique.h"
 
 namespace hwsim::algos {

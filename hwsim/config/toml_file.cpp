@@ -14,7 +14,7 @@ namespace hwsim {
 namespace {
 
 constexpr std::uintmax_t kFileBytesMax = std::uintmax_t{4} << 20;
-constexpr std::size_t kLineShown = 240;  // of a line, with every value that it holds
+constexpr std::size_t kLineShown = 240;  // characters of a line, with every value that it holds
 
 std::vector<std::string> split_lines(const std::string& text) {
   std::vector<std::string> lines;

@@ -56,7 +56,7 @@ PassShape shape_of(const PassWork& pass);
 template <class T>
 struct TrafficModel {
   StreamBytesOf<T> dram, l2;
-  /// Of what was asked for and moves compressed as DRAM sees it, the part that caches before L2 let through:
+  /// The part that caches before L2 let through of what was asked for and moves compressed as DRAM sees it:
   /// behind it L2 decides.
   StreamBytesOf<T> reaches_l2;
   StreamBytesOf<T> tile_chunk;  ///< tile memory's loads and stores: DRAM bytes of each chunk

@@ -70,7 +70,7 @@ enum FieldUse : unsigned {
 /// The declaration of one value of a request.
 struct FieldInfo {
   KeyInfo key;                     ///< name, range, meaning
-  std::string_view group = "";     ///< of `--set GROUP.NAME`; empty: no `--set` reaches it
+  std::string_view group = "";     ///< GROUP of `--set GROUP.NAME`; empty: no `--set` reaches it
   std::string_view file_key = "";  ///< in run.toml; empty: not recorded
   unsigned uses = kNothing;
   std::string_view choices = "";  ///< "scene|simple|complex"; empty: any value of the type

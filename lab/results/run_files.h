@@ -13,7 +13,7 @@ void write_point_files(const std::string& folder, const PointResult& point, cons
                        const std::string& scene_name, const ReferenceImage* reference);
 
 struct ManifestInput {
-  std::vector<std::string> arguments;  ///< of the command line, where there is one
+  std::vector<std::string> arguments;  ///< words of the command line, where there is one
   const RunPlan* plan = nullptr;
   const SceneSummary* scene = nullptr;  ///< none: not loaded yet
   double wall_s = 0.0;

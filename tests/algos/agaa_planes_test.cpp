@@ -1,4 +1,5 @@
-// AGAA's aggregates from the planes of compressed depth tiles (techniques 4.6) against those from samples.
+// AGAA's aggregates from the planes of compressed depth tiles (docs/techniques/agaa.md#depth-planes) against
+// those from samples.
 #include <gtest/gtest.h>
 
 #include "algos/agaa/shaders/counters.h"

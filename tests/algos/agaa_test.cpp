@@ -1,4 +1,5 @@
-// AGAA against closed forms and against itself on other paths (techniques 4.11 to 4.14).
+// AGAA against closed forms and against itself on other paths (docs/techniques/agaa.md#memory,
+// docs/techniques/agaa.md#tests).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,7 +39,7 @@ TEST(AgaaMemory, IsThePapersAtEveryRate) {
   EXPECT_EQ(bytes_per_pixel("agaa:c=2,msaa=16", native), 132.0);
   EXPECT_EQ(bytes_per_pixel("agaa:c=2,msaa=32", native), 234.0);  // 512: -54.3 %
   EXPECT_EQ(bytes_per_pixel("agaa:c=2,msaa=32,agg_bytes=20", native), 236.0);
-  // c * A + 6N + N * bits / 8; the percentages of techniques 4.11 are of 16 N.
+  // c * A + 6N + N * bits / 8; the percentages of docs/techniques/agaa.md#memory are of 16 N.
   const double percent_8x[] = {-50.0, -36.7, -23.4, -10.9}, percent_32x[] = {-58.8, -54.3, -49.8, -46.1};
   for (const int c : {1, 2, 4}) {
     const std::string text = "agaa:c=" + std::to_string(c) + ",msaa=";

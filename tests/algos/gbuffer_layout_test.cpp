@@ -115,7 +115,8 @@ std::uint64_t lit_samples(const std::string& technique, std::shared_ptr<const pi
       .technique[algos::BaseCounters::lit_samples];
 }
 
-// A tilted wall that fills the screen has no complex pixel by any layout's criteria (techniques 2.3).
+// A tilted wall that fills the screen has no complex pixel by any layout's criteria
+// (docs/techniques/deferred.md#simple-and-complex).
 TEST(SimpleComplex, FindsAWallSimpleInEveryLayout) {
   std::vector<glm::vec3> corners;
   add_grid(corners, {-60, -40, -31}, {120, 0, 17}, {0, 80, 6}, 1);

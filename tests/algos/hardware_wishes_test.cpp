@@ -1,5 +1,5 @@
 // The papers' wishes for hardware, each as a switch: what it changes in passes, memory, work and bytes, and
-// that the picture stays (techniques 10).
+// that the picture stays (docs/what_if.md#the-papers-hardware-wishes).
 #include <gtest/gtest.h>
 
 #include <cmath>

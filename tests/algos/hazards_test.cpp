@@ -1,4 +1,4 @@
-// Numerical hazards of the techniques, each provoked (techniques 1.2, 3.9, 4.14, 5.8): what they do to a
+// Numerical hazards of the techniques, each provoked (the traps of docs/techniques/): what they do to a
 // number is bounded, and nothing that is none reaches the image. Others have their place beside their
 // technique: coplanar duplicates (agaa_test, sbaa_test), full lists (sss_test), wires at the eye
 // (wire_test), exp2 and log2 at extremes (codec_test).
@@ -213,7 +213,8 @@ double fallback_share(int samples) {
   return static_cast<double>(fallbacks) / static_cast<double>(pixels);
 }
 
-// Techniques 3.4: a tilted plane at 4 samples is taken for two groups in 41 % of orientations, at 8 never.
+// docs/techniques/sbaa.md#analysis: a tilted plane at 4 samples is taken for two groups in 41 % of
+// orientations, at 8 never.
 TEST(Hazards, FourSamplesOfAPlaneMayLookBimodal) {
   const double four = fallback_share(4), eight = fallback_share(8);
   std::printf("[     note ] planes taken for two groups: 4 samples %.2f, 8 samples %.2f\n", four, eight);

@@ -1,5 +1,5 @@
 // Surface based anti-aliasing against multisampled deferred shading, against another implementation of its
-// analysis, and against scenes whose surfaces can be counted by hand (techniques 3.9).
+// analysis, and against scenes whose surfaces can be counted by hand (docs/techniques/sbaa.md#tests).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct AnalysisRules {
   float cos_alpha = 0.0f, end_region = 0.25f;
 };
 
-/// Techniques 3.3 and 3.4, written a pixel at a time; counts fallbacks.
+/// docs/techniques/sbaa.md#analysis, written a pixel at a time; counts fallbacks.
 std::vector<SurfaceSlot> analyze(const std::vector<Sample>& samples, const AnalysisRules& rules,
                                  std::uint64_t& fallbacks) {
   std::vector<SurfaceSlot> slots(static_cast<std::size_t>(rules.slots));
@@ -356,7 +356,8 @@ TEST(Sbaa, LastWriterOfASlotWinsAndIsCounted) {
   for (const glm::vec4& p : clear.color.pixels) ASSERT_GT(p.x, p.y);
 }
 
-// m numbers taken at random collide in b bits with probability 1 - prod(1 - i / 2^b) (techniques 3.9.8).
+// m numbers taken at random collide in b bits with probability 1 - prod(1 - i / 2^b)
+// (docs/techniques/sbaa.md#numbers).
 TEST(Sbaa, NumbersAliasAsOftenAsRandomOnes) {
   std::vector<glm::vec3> corners;
   std::uint32_t state = 1;

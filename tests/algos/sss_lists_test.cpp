@@ -1,4 +1,5 @@
-// Selective supersampling by per-pixel lists (techniques 5.8): coverage, order, visibility, overflow.
+// Selective supersampling by per-pixel lists (docs/techniques/sss.md#tests): coverage, order, visibility,
+// overflow.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Selective shader supersampling (techniques 5.8): weights, visibility, memory, and beads on a thin
-// highlight.
+// Selective shader supersampling (docs/techniques/sss.md#tests): weights, visibility, memory, and beads on a
+// thin highlight.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -67,7 +67,7 @@ class Clusters {
   }
 
   /// The planes of the wave's tile that are no background; 0: more than aggregates, or the tile is not held
-  /// as planes (techniques 4.6).
+  /// as planes (docs/techniques/agaa.md#depth-planes).
   int find_planes() {
     int count = 0;
     const int all = s_.tile_plane_count();
@@ -308,7 +308,7 @@ class Clusters {
   F inv_k2_;
   std::array<I, 4> words_ = {I(0), I(0), I(0), I(0)};  ///< the codes
   static constexpr int kOnlyBackground = 5;
-  std::array<int, 4> plane_{};  ///< of each aggregate
+  std::array<int, 4> plane_{};  ///< number of each aggregate's plane in its tile
 };
 
 struct DefineShader {

@@ -22,7 +22,7 @@ struct VisibilityShader {
   static void run(S& s, const VisibilityUniforms& u) {
     using F = typename S::F;
     using V = pipeline::GeometryVaryings;
-    // Of positions at any points of the plane: the cross product of their differences is normal to it.
+    // Positions at any points of the plane will do: the cross product of their differences is normal to it.
     const auto p = s.attr3(V::kPosition);
     const Vec3<F> across = {ddx(p.x), ddx(p.y), ddx(p.z)}, down = {ddy(p.x), ddy(p.y), ddy(p.z)};
     const auto frame = pixel_frame<F>(u.rays, s.pixel_x(), s.pixel_y());

@@ -1,5 +1,5 @@
 #pragma once
-// Aggregate G-buffer anti-aliasing (techniques 4; Crassin et al. 2016).
+// Aggregate G-buffer anti-aliasing (docs/techniques/agaa.md; Crassin et al. 2016).
 #include <array>
 #include <glm/glm.hpp>
 
@@ -41,11 +41,11 @@ struct AggregateUniforms {
   AggregateTargets targets;
   Ndf ndf = Ndf::toksvig;
   PixelRays rays;
-  float gloss_reference = 0.0f;  ///< S of techniques 4.8; 0: infinite
-  float least_exponent = 1.0f;   ///< of a lobe: one so wide that its Toksvig vector would vanish keeps this
-  int samples = 8;               ///< of all layers
-  int code_bits = 1;             ///< of a sample's aggregate; 0: one aggregate
-  int width = 1;                 ///< of the frame, px: addresses of the storage buffer
+  float gloss_reference = 0.0f;  ///< S of docs/techniques/agaa.md#shading; 0: infinite
+  float least_exponent = 1.0f;   ///< a lobe so wide that its Toksvig vector would vanish keeps this
+  int samples = 8;               ///< samples of all layers together
+  int code_bits = 1;             ///< bits of a sample's code; 0: there is one aggregate
+  int width = 1;                 ///< width of the frame in pixels: addresses of the storage buffer
 };
 
 struct VisibilityUniforms {
@@ -72,8 +72,8 @@ const pipeline::ComputeProgram& agaa_define_program();
 struct GenerateUniforms {
   AggregateUniforms aggregate;
   bool full_varyings = false;
-  int color_samples = 2;       ///< of the targets: an aggregate each
-  int raster_samples = 8;      ///< of a layer
+  int color_samples = 2;       ///< samples of the targets: one for each aggregate
+  int raster_samples = 8;      ///< samples of a layer
   glm::vec4 view_z_row{0.0f};  ///< view depth of world positions
 };
 /// Pass 3: image 0 the codes. Into color targets by blending, or by atomics into a storage buffer.
@@ -101,7 +101,7 @@ struct ShadeUniforms {
   std::array<pipeline::SamplePosition, 32> positions{};
   DiffuseFilter diffuse = DiffuseFilter::folded;
   bool separate_gloss = false, light_variance = false;
-  bool covariance = false;                       ///< of the samples' places; else of their depths alone
+  bool covariance = false;  ///< covariance of the samples' places is used; else that of their depths alone
   glm::vec4 depth_of_z{0.0f, 1.0f, 1.0f, 0.0f};  ///< view depth of z: (x + y z) / (z + w z)
   int shadow_taps = 4;
   std::array<float, kMaxShadowTaps> tap_position{}, tap_weight{};

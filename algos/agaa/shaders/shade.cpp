@@ -1,4 +1,4 @@
-// Shading of aggregates (techniques 4.8).
+// Shading of aggregates (docs/techniques/agaa.md#shading).
 #include "algos/agaa/shaders/programs.h"
 #include "pipeline/batch/fragment_batch.h"
 

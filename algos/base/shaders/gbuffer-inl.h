@@ -52,7 +52,7 @@ template <class F>
 struct GBufferValues {
   lanes::Vec3<F> position, normal, base, emissive;
   F metallic, roughness;
-  lanes::Vec2<F> gradient;  ///< of view-space depth
+  lanes::Vec2<F> gradient;  ///< change of view-space depth for a pixel
   F alpha = F(1.0f);        ///< coverage, where alpha is no test
 };
 
@@ -153,7 +153,8 @@ typename S::F view_z(S& s, const DeferredUniforms& u, typename S::I x, typename 
 }
 
 /// How far view z of sample 0's surface goes over one pixel right and one down. Without stored gradients: of
-/// the plane through the sample, met by the neighbors' rays (the position-difference form of techniques 2.3).
+/// the plane through the sample, met by the neighbors' rays (the position-difference form of
+/// docs/techniques/deferred.md#simple-and-complex).
 template <GBufferEncoding kEncoding, class S, class F>
 F depth_span(S& s, const DeferredUniforms& u, typename S::I x, typename S::I y, const lanes::Vec3<F>& normal,
              F z) {

@@ -36,7 +36,7 @@ struct PixelSamples {
   I id[pipeline::kMaxSamples];
   lanes::Vec3<F> normal[pipeline::kMaxSamples];
   F z[pipeline::kMaxSamples];
-  M in[pipeline::kMaxSamples];  ///< not yet part of a surface (U of techniques 3.3)
+  M in[pipeline::kMaxSamples];  ///< not yet part of a surface (U of docs/techniques/sbaa.md#analysis)
   M remaining;                  ///< any is
   I background;                 ///< samples that nothing was drawn to
 };
@@ -90,7 +90,7 @@ void load_samples(S& s, const SbaaAnalysisUniforms& u, PixelSamples<S>& p) {
 template <class S>
 struct Choice {
   typename S::I id, count;
-  lanes::Vec3<typename S::F> normal;  ///< of the lowest sample of the primitive
+  lanes::Vec3<typename S::F> normal;  ///< normal of the lowest sample of the primitive
   Choice() : id(0), count(0) {}
 };
 
@@ -117,7 +117,7 @@ void remove_primitive(S& s, const SbaaAnalysisUniforms& u, const Choice<S>& best
   p.remaining = left;
 }
 
-/// Aligned samples whose depths have one mode join the primitive (techniques 3.4).
+/// Aligned samples whose depths have one mode join the primitive (docs/techniques/sbaa.md#analysis).
 template <class S>
 void remove_surface(S& s, const SbaaAnalysisUniforms& u, Choice<S>& best, PixelSamples<S>& p) {
   using F = typename S::F;

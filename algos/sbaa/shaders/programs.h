@@ -1,6 +1,6 @@
 #pragma once
-// Programs of surface based anti-aliasing (techniques 3): visibility with primitive numbers, the analysis
-// that chooses surfaces, their G-buffer records, and the shading of these.
+// Programs of surface based anti-aliasing (docs/techniques/sbaa.md): visibility with primitive numbers, the
+// analysis that chooses surfaces, their G-buffer records, and the shading of these.
 #include <cmath>
 
 #include "algos/base/shaders/gbuffer.h"

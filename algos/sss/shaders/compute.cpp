@@ -1,4 +1,5 @@
-// Points on critical triangles, placed and lit by a compute shader: a thread a triangle (techniques 5.3).
+// Points on critical triangles, placed and lit by a compute shader: a thread a triangle
+// (docs/techniques/sss.md#points).
 #include <array>
 
 #include "algos/sss/shaders/programs.h"

@@ -1,4 +1,4 @@
-// Per-pixel lists of what critical triangles contribute (techniques 5.4): their resolve.
+// Per-pixel lists of what critical triangles contribute (docs/techniques/sss.md#lists): their resolve.
 #include <array>
 
 #include "algos/sss/shaders/programs.h"

@@ -1,4 +1,4 @@
-// Per-pixel lists of what critical triangles contribute (techniques 5.4): creation.
+// Per-pixel lists of what critical triangles contribute (docs/techniques/sss.md#lists): creation.
 #include <array>
 
 #include "algos/sss/shaders/programs.h"

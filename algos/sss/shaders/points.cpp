@@ -1,4 +1,4 @@
-// Points on critical triangles, placed by a geometry shader (techniques 5.2).
+// Points on critical triangles, placed by a geometry shader (docs/techniques/sss.md#points).
 #include <array>
 
 #include "algos/sss/shaders/programs.h"
@@ -50,8 +50,8 @@ struct PointShader : SssGeometryShader<kVertex, pipeline::GeometryOutput::points
  private:
   static constexpr auto kCount = static_cast<std::size_t>(attribute_count(kVertex));
   template <class F>
-  using Values =
-      std::array<std::array<F, kCount>, 3>;  ///< of the three vertices, in the order of attribute_place
+  using Values = std::array<std::array<F, kCount>,
+                            3>;  ///< attributes of the three vertices, in the order of attribute_place
   template <class F>
   using Scalars = std::array<F, static_cast<std::size_t>(point_scalars(kVertex))>;
   static constexpr auto kWeight = static_cast<std::size_t>(point_scalars(kVertex) - 3);

@@ -1,5 +1,5 @@
 #pragma once
-// Shaders of selective shader supersampling (techniques 5).
+// Shaders of selective shader supersampling (docs/techniques/sss.md).
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace hwsim::algos {
 
-/// Of a list's node that has a mask of the pixel's places and the change of its depth.
+/// Words of a list's node that has a mask of the pixel's places and the change of its depth.
 inline constexpr int kSssPlaceNodeWords = 8;
 
 enum class SssMode { both, either };  ///< small triangle and small highlight, or one of them
@@ -56,7 +56,7 @@ struct SssUniforms {
   glm::mat4 clip_from_world{1.0f};
   int width_px = 1, height_px = 1;
 
-  // Which triangles (5.1)
+  // Which triangles (docs/techniques/sss.md#classification)
   SssMode mode = SssMode::both;
   float triangle_px = 4.0f, highlight_px = 1.0f;
   bool early_exit = true;
@@ -65,21 +65,21 @@ struct SssUniforms {
   float exponent_scale = 1.0f;  ///< Phong's exponent over the material's: a quarter for Blinn-Phong's
   bool normalized = false;      ///< the lobe has the factor (s + 8) / (8 pi)
 
-  // How many samples, and where (5.2)
+  // How many samples, and where (docs/techniques/sss.md#points)
   float samples_per_px = 16.0f, samples_min = 4.0f, samples_max = 64.0f, border_share = 0.25f;
   float depth_bias = 0.0f, depth_slope = 1.0f;
   // The depth image's eight samples, four bits each from the lowest: the one nearest to each of 4x4 cells of
   // the pixel, row by row, and where they lie, in 1/16 px from the pixel's corner.
   std::array<std::int32_t, 2> nearest_samples{};
   std::int32_t samples_x = 0, samples_y = 0;
-  std::array<std::int32_t, 8> neighbor_samples{};  ///< of each pixel around, the sample nearest to this one
+  std::array<std::int32_t, 8> neighbor_samples{};  ///< for each pixel around, its sample nearest to this one
   float radiance_max = 1.0f;                       ///< samples are clamped to it
 
-  float fixed_point_scale = 1048576.0f;  // compute points (5.3)
+  float fixed_point_scale = 1048576.0f;  // compute points (docs/techniques/sss.md#points)
   std::vector<SssDraw> draws = std::vector<SssDraw>(1);
   int vertex_words = 8;
 
-  int grid = 4;  // lists (5.4); 0: by the highlight's width
+  int grid = 4;  // lists (docs/techniques/sss.md#lists); 0: by the highlight's width
   int capacity_nodes = 0, node_words = 4, list_nodes_max = 32;
   bool conservative_raster = false;
 
@@ -87,12 +87,12 @@ struct SssUniforms {
   bool by_place() const { return node_words == kSssPlaceNodeWords; }
 };
 
-/// Of the frame below: shaders go through them one by one.
+/// Samples of the frame below: shaders go through them one by one.
 inline constexpr int kSssBaseSamples = 8;
 
 /// Image slots of the passes that sample.
 inline constexpr int kSssDepthSlot = 0, kSssShadowSlot = 1;
-/// Of composites: the frame, resolved or, with marks, multisampled; then what was accumulated.
+/// Slots of composites: the frame, resolved or, with marks, multisampled; then what was accumulated.
 inline constexpr int kSssFrameSlot = 0, kSssSumSlot = 1;
 
 // Points from a geometry shader
@@ -111,7 +111,7 @@ struct SssClearUniforms {
   std::int32_t value = 0;
   bool counter = false;
 };
-inline constexpr int kSssClearWords = 4;  ///< of an invocation
+inline constexpr int kSssClearWords = 4;  ///< words that an invocation clears
 
 // Lists. Buffers: heads, nodes, the counter of nodes.
 inline constexpr int kSssHeadBuffer = 0, kSssNodeBuffer = 1, kSssCounterBuffer = 2;

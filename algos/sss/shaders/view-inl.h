@@ -109,7 +109,7 @@ Vec2<F> gradient(const SssCorner<F> (&c)[3], F area2, F v0, F v1, F v2) {
           ((v2 - v0) * (c[1].x - c[0].x) - (v1 - v0) * (c[2].x - c[0].x)) * inv};
 }
 
-/// Exponent of the material's lobe, before the scale (techniques 0.5).
+/// Exponent of the material's lobe, before the scale (docs/techniques/conventions.md#shading-models).
 inline float material_exponent(const pipeline::MaterialView& m) {
   const float alpha = std::max(m.roughness * m.roughness, 0.03f);
   return std::max(2.0f / (alpha * alpha) - 2.0f, 0.0f);
@@ -128,9 +128,9 @@ F lobe_width(F exponent) {
 }
 
 /// Radians for a pixel by which the normal turns, in the direction on the screen in which it turns most, and
-/// across it: the singular values of its derivatives. (Techniques 5.1 divides the longest edge by the angle
-/// between normals, which is this for triangles about as long as wide. On a bar's long ones the normal turns
-/// across them, and their length says nothing of how thin the highlight is.)
+/// across it: the singular values of its derivatives. (docs/techniques/sss.md#classification divides the
+/// longest edge by the angle between normals, which is this for triangles about as long as wide. On a bar's
+/// long ones the normal turns across them, and their length says nothing of how thin the highlight is.)
 template <class F>
 Vec2<F> normal_turns(const SssCorner<F> (&c)[3], F area2) {
   const Vec2<F> x = gradient(c, area2, c[0].normal.x, c[1].normal.x, c[2].normal.x);

@@ -14,7 +14,7 @@ namespace hwsim::algos::HWY_NAMESPACE {
 namespace lanes = pipeline::HWY_NAMESPACE;
 using lanes::Vec3;
 
-/// Eq. 6.1 and Listing 6.1; the displaced radius is the clamped one (techniques 6).
+/// Eq. 6.1 and Listing 6.1; the displaced radius is the clamped one (docs/techniques/wire.md).
 struct WireVertexShader {
   template <class S>
   static void run(S& s, const WireVertexUniforms& u) {

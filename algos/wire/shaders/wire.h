@@ -1,5 +1,5 @@
 #pragma once
-// Shaders of wire anti-aliasing (techniques 6).
+// Shaders of wire anti-aliasing (docs/techniques/wire.md).
 #include "pipeline/batch/program.h"
 #include "pipeline/shade/lighting.h"
 #include "pipeline/shade/mesh_vertex.h"
