@@ -12,7 +12,13 @@ namespace hwsim::algos {
 
 std::span<const Room> rooms() {
   static const std::vector<Room> all = {
-      forward_room(), deferred_room(), sbaa_room(), agaa_room(), sss_room(), wire_room(), filter_room(),
+      forward_room(),   //
+      deferred_room(),  //
+      sbaa_room(),      //
+      agaa_room(),      //
+      sss_room(),       //
+      wire_room(),      //
+      filter_room(),    //
   };
   return all;
 }

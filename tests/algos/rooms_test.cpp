@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "algos/agaa/shaders/counters.h"
 #include "algos/sbaa/shaders/counters.h"
 #include "algos/sss/shaders/counters.h"
+#include "algos/techniques.h"
 
 namespace hwsim::algos::test {
 namespace {
@@ -101,6 +103,47 @@ TEST(Rooms, CodesOfNotesAreExplainedOnce) {
     EXPECT_FALSE(code.title.empty() || code.explanation.empty()) << code.code;
   }
   EXPECT_EQ(codes, (std::set<std::string_view>{"T101", "T102"}));
+}
+
+/// "severity code: message; help" of each note.
+std::vector<std::string> told(const std::string& technique, const WorkTrace& trace) {
+  std::vector<std::string> texts;
+  for (const Diagnostic& d : frame_notes(parse_technique(technique), trace))
+    texts.push_back((d.severity == Severity::warning ? "warning " : "note ") + d.code + ": " + d.message +
+                    "; " + d.help);
+  return texts;
+}
+
+TEST(Notes, ThreeAggregatesInFourColorSamplesAreTold) {
+  WorkTrace trace;
+  trace.passes.resize(2);
+  trace.passes[1].name = "generate";
+  EXPECT_TRUE(told("agaa:c=3", trace).empty()) << "a storage buffer has no gap";
+  trace.passes[1].color_targets.resize(1);
+  trace.passes[1].color_targets[0].samples = 4;
+  EXPECT_EQ(told("agaa:c=3", trace),
+            std::vector<std::string>{"note T102: agaa:c=3: color samples divide raster samples: 3 aggregates "
+                                     "take the memory of 4; accumulate=atomics stores them without a gap"});
+  EXPECT_TRUE(told("agaa:c=4", trace).empty());
+  EXPECT_TRUE(told("none", trace).empty());
+}
+
+TEST(Notes, ListsThatLostFragmentsAreTold) {
+  WorkTrace trace;
+  trace.passes.resize(1);
+  trace.passes[0].chunks.resize(2);
+  EXPECT_TRUE(told("sss_ppll", trace).empty());
+  trace.passes[0].chunks[0].technique[SssCounters::sss_stored_fragments] = 90;
+  trace.passes[0].chunks[1].technique[SssCounters::sss_dropped_fragments] = 10;
+  EXPECT_EQ(told("sss_ppll+fxaa", trace),
+            std::vector<std::string>{"warning T101: sss_ppll+fxaa: 10 of 100 fragments found the lists full: "
+                                     "the image lacks them; capacity_nodes=100 holds all"});
+  trace.passes[0].chunks[1].technique[SssCounters::sss_dropped_fragments] = 0;
+  trace.passes[0].chunks[1].technique[SssCounters::sss_truncated_pixels] = 3;
+  EXPECT_EQ(told("sss_ppll:m=8", trace),
+            std::vector<std::string>{"warning T101: sss_ppll:m=8: the lists of 3 pixels are longer than the "
+                                     "resolve reads; list_cap reads up to 64"});
+  EXPECT_TRUE(told("sss_cs", trace).empty());
 }
 
 }  // namespace
