@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "hwsim/base/content_hash.h"
 #include "hwsim/trace/trace_file.h"
 
 namespace hwsim::cost_models {
@@ -19,9 +20,7 @@ std::vector<std::uint64_t> keys_of_passes(const WorkTrace& trace) {
   for (const PassWork& pass : trace.passes) {
     WorkTrace alone;
     alone.passes.push_back(pass);
-    std::uint64_t hash = 0xcbf29ce484222325u;
-    for (const std::uint8_t byte : encode_trace(alone)) hash = (hash ^ byte) * 0x100000001b3u;
-    keys.push_back(hash);
+    keys.push_back(fnv1a(encode_trace(alone)));
   }
   return keys;
 }

@@ -8,33 +8,13 @@
 #include <tuple>
 
 #include "cost_models/jet.h"
-#include "hwsim/gpu/gpu_keys.h"
+#include "hwsim/gpu/gpu_lift.h"
 #include "hwsim/timing/time_pass.h"
 
 namespace hwsim::cost_models {
 namespace {
 
 using Jets = Jet<kJetWidth>;
-
-/// Copies a config to another scalar type; `place` says what a key becomes.
-template <class T, class Place>
-struct Lifter {
-  std::vector<Key> keys;
-  Place place;
-  std::size_t next = 0;
-  void key(const KeyInfo& info, T& value) { value = place(info.name, *std::get<double*>(keys[next++].slot)); }
-  void key(const KeyInfo&, int& value) { value = *std::get<int*>(keys[next++].slot); }
-  void key(const KeyInfo&, bool& value) { value = *std::get<bool*>(keys[next++].slot); }
-};
-
-template <class T, class Place>
-GpuValues<T> lift(const GpuConfig& gpu, const Place& place) {
-  GpuValues<double> base = gpu;
-  GpuValues<T> lifted;
-  Lifter<T, Place> lifter{keys_of(base), place};
-  describe(lifter, lifted);
-  return lifted;
-}
 
 double seeded(double value, std::size_t, double) { return value; }
 Jets seeded(double value, std::size_t lane, Jets) {
@@ -138,7 +118,7 @@ void Predictor::collect_passes(const std::vector<bool>& wanted) {
                          std::size_t p) {
     const PassWork& pass = trace.passes[p];
     if (const auto found = of_replay.find(&pass); found != of_replay.end()) return found->second;
-    const bool waits = pass.barrier_before || p == 0;
+    const bool waits = hwsim::waits(trace, p);
     std::size_t index = passes_.size();
     if (!keys.empty()) index = known.emplace(std::tuple(gpu, waits, keys[p]), index).first->second;
     if (index == passes_.size()) passes_.push_back({&pass, gpu, waits, shape_of(pass)});
@@ -244,13 +224,11 @@ Prediction predict_frame(const WorkTrace& trace, const GpuConfig& gpu, const std
         if (keys[k] == key) return seeded(value, k - first, Jets());
       return Jets(value);
     };
-    Jets total(0.0);
     const auto rates = derive_rates<Jets>(lift<Jets>(gpu, place));
-    for (std::size_t p = 0; p < trace.passes.size(); ++p) {
-      const PassWork& pass = trace.passes[p];
-      const auto time = parted_time(pass, shape_of(pass), rates, pass.barrier_before || p == 0);
-      total += time.work + time.fixed;
-    }
+    const Jets total = sum_of_passes_ns<Jets>(trace, [&](const PassWork& pass, bool waits) {
+      const auto time = parted_time(pass, shape_of(pass), rates, waits);
+      return Jets(time.work + time.fixed);
+    });
     prediction.ms = total.a * 1e-6;
     for (std::size_t k = first; k < std::min(keys.size(), first + kJetWidth); ++k)
       prediction.gradient[k] = total.v[k - first] / total.a;

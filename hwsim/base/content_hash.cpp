@@ -8,8 +8,20 @@ namespace hwsim {
 static_assert(std::endian::native == std::endian::little,
               "files and keys are little-endian and read by memcpy");
 
+namespace {
+constexpr std::uint64_t kPrime = 0x100000001b3u;
+}  // namespace
+
+std::uint64_t fnv1a(std::span<const std::uint8_t> bytes, std::uint64_t before) {
+  for (const std::uint8_t byte : bytes) before = (before ^ byte) * kPrime;
+  return before;
+}
+
+std::uint64_t fnv1a(std::string_view text) {
+  return fnv1a({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
 void ContentHash::add_word(std::uint64_t word) {
-  constexpr std::uint64_t kPrime = 0x100000001b3u;
   a_ = (a_ ^ word) * kPrime;
   a_ ^= a_ >> 32;  // the product carries only upward: without this the high bytes of a word would not reach
                    // the low bits

@@ -190,15 +190,11 @@ Machine::Progress run_windows(Machine& machine, const Timeline& line, const Wind
 /// The stack of an engine without a critical path: units in proportion to a high power of their busy time.
 void share_stack(PassTime<double>& time) {
   constexpr double kSharpness = 8.0;
-  double peak = 0.0, sum = 0.0;
-  for (const double busy : time.busy_ns) peak = std::max(peak, busy);
-  if (peak <= 0.0) {
+  const PowerShares<double> shares(time.busy_ns, kSharpness);
+  if (shares.peak > 0.0)
+    shares.share(time);
+  else
     time.stack_ns[at(Unit::fe)] = time.time_ns;
-    return;
-  }
-  for (const double busy : time.busy_ns) sum += std::pow(busy / peak, kSharpness);
-  for (std::size_t u = 0; u < kUnitCount; ++u)
-    time.stack_ns[u] = time.time_ns * std::pow(time.busy_ns[u] / peak, kSharpness) / sum;
 }
 
 }  // namespace

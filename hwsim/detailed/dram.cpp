@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "hwsim/base/units_of_measure.h"
+
 namespace hwsim {
 namespace {
 
@@ -22,7 +24,7 @@ Dram::Dram(const GpuConfig& gpu)
   row_miss_ns_ = gpu.dram_row_miss_ns;
   row_cycle_ns_ = gpu.dram_row_cycle_ns;
   turn_ns_ = gpu.dram_turn_ns;
-  const double clk_ns = 1000.0 / gpu.core_clock_mhz;
+  const double clk_ns = kNsPerUs / gpu.core_clock_mhz;
   // The config's latency is that of an idle DRAM with the row closed.
   latency_ns_ =
       std::max(0.0, (gpu.dram_latency_cycles - gpu.l2_latency_cycles) * clk_ns - row_miss_ns_ - line_ns_);

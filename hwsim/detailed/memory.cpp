@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "hwsim/base/units_of_measure.h"
+
 namespace hwsim {
 namespace {
 
@@ -22,7 +24,7 @@ Stream owner(std::uint64_t line) {
 }
 
 std::size_t l2_lines(const GpuConfig& gpu) {
-  const double lines = (gpu.l2_size_kib + gpu.llc_size_kib) * 1024.0 / kTextureLineBytes;
+  const double lines = (gpu.l2_size_kib + gpu.llc_size_kib) * kBytesPerKib / kTextureLineBytes;
   return std::min(kLinesMax, static_cast<std::size_t>(std::max(16.0, lines)));
 }
 
@@ -57,7 +59,7 @@ LineCache::Outcome LineCache::access(std::uint64_t line, bool write) {
 
 MemorySystem::MemorySystem(const GpuConfig& gpu, std::uint64_t seed)
     : l2_(l2_lines(gpu), static_cast<std::size_t>(gpu.l2_ways)), dram_(gpu), random_(seed + 50) {
-  const double clk_ns = 1000.0 / gpu.core_clock_mhz;
+  const double clk_ns = kNsPerUs / gpu.core_clock_mhz;
   l2_line_ns_ = kTextureLineBytes * clk_ns / gpu.l2_bytes_per_clk;
   // Latencies are those seen by a texture request; that of L1 is part of them.
   l2_latency_ns_ = std::max(0.0, (gpu.l2_latency_cycles - gpu.tex_latency_cycles) * clk_ns);

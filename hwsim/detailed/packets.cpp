@@ -6,7 +6,8 @@
 namespace hwsim {
 namespace {
 
-constexpr double kUnitsBeforeCores = 7.0;  // queues that a packet waits in before it is dispatched
+/// Queues that a packet waits in before it is dispatched.
+constexpr auto kUnitsBeforeCores = static_cast<double>(count_units(UnitPlace::front));
 
 SubgroupWork subgroup_work(const PassCounters& c, const ShaderPipes<double>& pipes, double tex_ns,
                            const TrafficModel<double>& model, const GpuRates<double>& r, double subgroups) {
@@ -97,8 +98,8 @@ double in_flight_packets(const ChunkPackets& chunk, const ChunkCost<double>& cos
                      r.unit_lines * kTextureLineBytes / std::max(1.0, chunk.expected_bytes));
   if (chunk.subgroups <= 0.0) return packets;
   double behind_ns = 0.0;
-  for (std::size_t u = at(Unit::shader); u < kUnitCount; ++u)
-    behind_ns = std::max(behind_ns, chunk.service_ns[u]);
+  for (std::size_t u = 0; u < kUnitCount; ++u)
+    if (!stands_in(u, UnitPlace::front)) behind_ns = std::max(behind_ns, chunk.service_ns[u]);
   return packets +
          waiting(cost.shader_latency_ns / chunk.expected_ns, behind_ns / chunk.expected_ns,
                  chunk.resident * r.shader_cores * static_cast<double>(chunk.count) / chunk.subgroups);

@@ -5,6 +5,7 @@
 
 #include "hwsim/config/assign.h"
 #include "hwsim/gpu/gpu_keys.h"
+#include "hwsim/gpu/gpu_lift.h"
 #include "hwsim/timing/dual.h"
 #include "hwsim/timing/time_pass.h"
 
@@ -14,32 +15,21 @@ namespace {
 constexpr std::size_t kWidth = 8;  // derivatives at a time: two vector registers of doubles with AVX-512
 using Number = Dual<kWidth>;
 
-/// Copies the numbers of a config to duals; the reals from `first` on become the parameters 0, 1, ...
-struct ToDuals {
-  const std::vector<Key>& keys;
-  std::size_t first = 0;
-  std::size_t next = 0, reals = 0;
-
-  void key(const KeyInfo&, Number& value) {
-    const double number = *std::get<double*>(keys[next++].slot);
+/// The numbers of a GPU as duals; the reals from `first` on become the parameters 0, 1, ...
+GpuValues<Number> seeded(const GpuValues<double>& values, std::size_t first) {
+  std::size_t reals = 0;
+  return lift<Number>(values, [&](std::string_view, double value) {
     const std::size_t index = reals++;
-    const bool seeded = index >= first && index < first + kWidth;
-    value = seeded ? Number(number, index - first) : Number(number);
-  }
-  void key(const KeyInfo&, int& value) { value = *std::get<int*>(keys[next++].slot); }
-  void key(const KeyInfo&, bool& value) { value = *std::get<bool*>(keys[next++].slot); }
-};
+    const bool is_parameter = index >= first && index < first + kWidth;
+    return is_parameter ? Number(value, index - first) : Number(value);
+  });
+}
 
 template <class T>
 T frame_time_ns(const WorkTrace& trace, const GpuValues<T>& gpu, Engine engine) {
   const GpuRates<T> rates = derive_rates<T>(gpu);
-  T sum(0.0);
-  bool first = true;
-  for (const PassWork& pass : trace.passes) {
-    sum += time_pass(pass, rates, engine, pass.barrier_before || first).time_ns;
-    first = false;
-  }
-  return sum;
+  return sum_of_passes_ns<T>(
+      trace, [&](const PassWork& pass, bool waits) { return time_pass(pass, rates, engine, waits).time_ns; });
 }
 
 std::optional<double> doubled_time_ns(const WorkTrace& trace, const GpuValues<double>& gpu, const Key& key,
@@ -63,10 +53,7 @@ std::vector<Sensitivity> sensitivities(const WorkTrace& trace, const GpuConfig& 
     if (std::holds_alternative<double*>(key.slot)) reals.push_back(key);
   std::vector<Sensitivity> result;
   for (std::size_t first = 0; first < reals.size(); first += kWidth) {
-    GpuValues<Number> duals;
-    ToDuals to_duals{keys, first};
-    describe(to_duals, duals);
-    const Number time = frame_time_ns(trace, duals, engine);
+    const Number time = frame_time_ns(trace, seeded(values, first), engine);
     for (std::size_t i = 0; i < kWidth && first + i < reals.size(); ++i) {
       const Key& key = reals[first + i];
       Sensitivity s{key.info.name, *std::get<double*>(key.slot), time.d[i], 0.0, {}};
@@ -84,16 +71,14 @@ std::vector<UnitHeadroom> headroom(const WorkTrace& trace, const GpuConfig& gpu,
   for (std::size_t u = 0; u < kUnitCount; ++u) {
     UnitHeadroom entry{static_cast<Unit>(u), 0.0};
     double busy_ns = 0.0;
-    bool first = true;
-    for (const PassWork& pass : trace.passes) {
+    entry.time_ns = sum_of_passes_ns<double>(trace, [&](const PassWork& pass, bool waits) {
       std::vector<ChunkCost<double>> costs = chunk_costs(pass, rates);
       for (ChunkCost<double>& cost : costs) {
         busy_ns += cost.ns[u];
         cost.ns[u] = 0.0;
       }
-      entry.time_ns += time_costs(costs, rates, engine, pass.barrier_before || first).time_ns;
-      first = false;
-    }
+      return time_costs(costs, rates, engine, waits).time_ns;
+    });
     if (busy_ns > 0.0) result.push_back(entry);
   }
   std::stable_sort(result.begin(), result.end(),

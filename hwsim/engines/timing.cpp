@@ -10,10 +10,6 @@
 namespace hwsim {
 namespace {
 
-constexpr std::array<std::string_view, kUnitCount> kUnitNames = {
-    "fe", "ia", "vs", "setup", "raster", "hiz", "zrop", "shader", "tex", "crop", "resolve", "l2", "dram"};
-constexpr std::array<std::string_view, kStreamCount> kStreamNames = {
-    "depth", "color", "texture", "storage", "vertex", "index", "constant", "shader", "other"};
 constexpr double kTolerance = 1e-9;  // relative difference of sums of doubles
 
 PassTiming report(const PassWork& pass, const PassTime<double>& time) {
@@ -69,7 +65,7 @@ class InvariantCheck {
         "moves " + std::to_string(bytes) + " bytes in " + std::to_string(p.time_ns) + " ns, over the peak");
     for (std::size_t u = 0; u < kUnitCount; ++u)
       require(p.busy_ns[u] <= p.time_ns * (1.0 + kTolerance), p.name,
-              "unit " + std::string(kUnitNames[u]) + " is busy for longer than the pass");
+              "unit " + std::string(kUnits[u].id) + " is busy for longer than the pass");
   }
 
   void require(bool holds, const std::string& pass_name, const std::string& what) {
@@ -87,9 +83,6 @@ class InvariantCheck {
 
 }  // namespace
 
-std::string_view unit_name(Unit unit) { return kUnitNames[at(unit)]; }
-std::string_view stream_name(Stream stream) { return kStreamNames[at(stream)]; }
-
 std::string_view support_name(Support support) {
   switch (support) {
     case Support::calibrated:
@@ -102,56 +95,6 @@ std::string_view support_name(Support support) {
       return "uncalibrated";
   }
   return "uncalibrated";
-}
-
-std::string_view engine_name(Engine engine) {
-  switch (engine) {
-    case Engine::roofline:
-      return "roofline";
-    case Engine::queue:
-      return "queue";
-    case Engine::detailed:
-      return "detailed";
-  }
-  return "queue";
-}
-
-std::optional<Engine> engine_from_name(std::string_view name) {
-  for (const Engine engine : {Engine::roofline, Engine::queue, Engine::detailed})
-    if (engine_name(engine) == name) return engine;
-  return std::nullopt;
-}
-
-double StreamBytes::total_read() const { return std::accumulate(read.begin(), read.end(), 0.0); }
-double StreamBytes::total_write() const { return std::accumulate(write.begin(), write.end(), 0.0); }
-
-IssuedOps issued_ops(const ShaderCounters& s, int subgroup_size) {
-  const auto pair = [](std::uint64_t alu, std::uint64_t sfu) {
-    return IssuedOps{static_cast<double>(alu), static_cast<double>(sfu)};
-  };
-  if (subgroup_size <= 8) return pair(s.alu_issued_lane_ops_w8, s.sfu_issued_lane_ops_w8);
-  if (subgroup_size <= 16) return pair(s.alu_issued_lane_ops_w16, s.sfu_issued_lane_ops_w16);
-  if (subgroup_size <= 32) return pair(s.alu_issued_lane_ops_w32, s.sfu_issued_lane_ops_w32);
-  return pair(s.alu_issued_lane_ops_w64, s.sfu_issued_lane_ops_w64);
-}
-
-double subgroups_of(const PassCounters& c, int subgroup_size) {
-  return static_cast<double>(c.stats.fragment_shader_invocations + c.stats.geometry_shader_invocations +
-                             c.stats.compute_shader_invocations) /
-         subgroup_size;
-}
-
-double packets_of(const PassCounters& c, int subgroup_size) {
-  constexpr std::uint64_t kTileItems = 16, kItemBytes = 64;
-  const std::uint64_t bytes = c.mem.depth_read_bytes + c.mem.depth_write_bytes + c.mem.color_read_bytes +
-                              c.mem.color_write_bytes + c.mem.texture_read_bytes + c.mem.storage_read_bytes +
-                              c.mem.storage_write_bytes + c.mem.vertex_read_bytes + c.mem.index_read_bytes;
-  const std::uint64_t items =
-      std::max({c.stats.fragment_shader_invocations + c.stats.compute_shader_invocations, 4 * c.raster.quads,
-                kTileItems * c.raster.visited_tiles, kTileItems * c.hiz.tested_tiles,
-                c.stats.input_assembly_vertices, c.setup.in_primitives, c.crop.exported_fragments,
-                c.resolve.written_pixels, c.fe.draws, bytes / kItemBytes});
-  return std::max(1.0, std::ceil(static_cast<double>(items) / subgroup_size));
 }
 
 namespace {
@@ -186,14 +129,14 @@ FrameTiming time_frame(const WorkTrace& trace, const GpuConfig& gpu, Engine engi
   frame.engine = engine;
   frame.passes.reserve(trace.passes.size());
   double variance = 0.0;
-  for (const PassWork& pass : trace.passes) {
-    const bool waits = pass.barrier_before || frame.passes.empty();
+  for (std::size_t p = 0; p < trace.passes.size(); ++p) {
+    const PassWork& pass = trace.passes[p];
     // A clear has no order of work that events could follow.
     const bool events = engine == Engine::detailed && pass.kind != PassKind::clear;
     frame.passes.push_back(
-        events ? detailed_pass(pass, gpu, rates, options, frame.passes.size(), waits)
-               : report(pass,
-                        time_pass(pass, rates, engine == Engine::roofline ? engine : Engine::queue, waits)));
+        events ? detailed_pass(pass, gpu, rates, options, p, waits(trace, p))
+               : report(pass, time_pass(pass, rates, engine == Engine::roofline ? engine : Engine::queue,
+                                        waits(trace, p))));
     frame.time_ns += frame.passes.back().time_ns;
     add(frame.dram_bytes, frame.passes.back().dram_bytes);
     add_interval(frame.passes.back(), variance);

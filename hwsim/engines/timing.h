@@ -8,38 +8,16 @@
 #include <vector>
 
 #include "hwsim/gpu/gpu_config.h"
+#include "hwsim/timing/engine.h"
+#include "hwsim/timing/traffic.h"
 #include "hwsim/trace/work_trace.h"
+#include "hwsim/units/units.h"
 
 namespace hwsim {
-
-/// Hardware units in pipeline order; the ids are those of the glossary.
-enum class Unit : std::uint8_t { fe, ia, vs, setup, raster, hiz, zrop, shader, tex, crop, resolve, l2, dram };
-inline constexpr int kUnitCount = 13;
-std::string_view unit_name(Unit unit);
-
-enum class Stream : std::uint8_t { depth, color, texture, storage, vertex, index, constant, shader, other };
-inline constexpr int kStreamCount = 9;
-std::string_view stream_name(Stream stream);
 
 /// Distance from the region where the model was calibrated.
 enum class Support : std::uint8_t { calibrated, interpolated, extrapolated, uncalibrated };
 std::string_view support_name(Support support);
-
-enum class Engine : std::uint8_t { roofline, queue, detailed };
-std::string_view engine_name(Engine engine);
-std::optional<Engine> engine_from_name(std::string_view name);
-
-struct TimingOptions {
-  double detailed_sample_ratio = 1.0;  ///< engine detailed: part of a pass that is simulated
-  std::uint64_t events_without_progress_max = 100'000'000;  ///< engine detailed: then it stops with a report
-};
-
-/// DRAM bytes of a stream; reals, because a miss ratio scales integer counts.
-struct StreamBytes {
-  std::array<double, kStreamCount> read{}, write{};
-  double total_read() const;
-  double total_write() const;
-};
 
 struct PassTiming {
   std::string name;

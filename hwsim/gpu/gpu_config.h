@@ -1,6 +1,6 @@
 #pragma once
 // A GPU as files describe it. Rates are documented in docs/hardware_model.md; every key is declared in
-// gpu_keys.h.
+// the header of its unit.
 #include <array>
 #include <map>
 #include <optional>
@@ -12,6 +12,7 @@
 #include "hwsim/config/key.h"
 #include "hwsim/config/toml_value.h"
 #include "hwsim/gpu/gpu_features.h"
+#include "hwsim/units/units.h"
 
 namespace hwsim {
 
@@ -30,116 +31,18 @@ struct Origin {
   std::string to_string() const;  ///< "gtx470.toml:12, published [HEX]", "--set", "built-in default, assumed"
 };
 
-/// The numbers that enter the timing model, over the scalar type: double to predict, Jets to fit.
-/// "clk" is the core clock of the whole chip unless the key says per core, per engine or per unit.
+/// Ends the list of bases.
+struct NoValues {};
+
+/// The numbers that enter the timing model, over the scalar type: double to predict, Jets to fit. Each unit
+/// has its own (hwsim/units). "clk" is the core clock of the whole chip unless the key says per core, per
+/// engine or per unit.
+#define HWSIM_PART_VALUES(id, Name) units::Name::Values<T>,
 template <class T>
-struct GpuValues {
-  T core_clock_mhz{0.0};
-  T shader_clock_ratio{1.0};
-
-  T shader_cores{0.0};
-  T fp32_lanes_per_core{0.0};
-  T sfu_lanes_per_core{0.0};
-  int subgroup_size = 32;
-  T vliw_slots{1.0};
-  T vliw_fill_slots{1.0};
-  T alu_efficiency_ratio{1.0};
-  T interp_scalars_per_core_clk{0.0};
-  bool interp_on_alu = false;
-  T registers_kib_per_core{256.0};
-  T group_memory_kib_per_core{32.0};
-  T subgroups_per_core_max{48.0};
-  T alu_latency_cycles{8.0};
-  T load_words_per_core_clk{16.0};
-  T group_memory_words_per_core_clk{32.0};
-  T atomic_lane_ops_per_clk{64.0};
-  T atomic_same_address_ops_per_clk{1.0};
-
-  T tex_bilinear_per_clk{0.0};
-  T tex_64bit_ratio{1.0};
-  T tex_128bit_ratio{0.25};
-  T tex_efficiency_ratio{1.0};
-  T tex_latency_cycles{150.0};
-  T l1_size_kib{16.0};
-  int l1_ways = 8;
-  int core_lines_max = 256;
-  T l1_fill_bytes_per_core_clk{64.0};
-
-  T draw_cycles{8.0};
-  T state_change_cycles{16.0};
-  T ia_indices_per_clk{0.0};
-  T gs_output_words_per_core_clk{4.0};
-  bool gs_on_chip = true;
-  T setup_drawn_triangles_per_clk{0.0};
-  T setup_culled_triangles_per_clk{0.0};
-  T raster_engines{1.0};
-  T raster_px_per_engine_clk{0.0};
-  T raster_samples_per_clk{0.0};
-  T raster_tiles_per_engine_clk{1.0};
-  T hiz_px_per_clk{0.0};
-
-  T zrop_samples_per_unit_clk{0.0};
-  T zrop_efficiency_ratio{1.0};
-  T export_px_per_clk{0.0};
-  T export_64bit_ratio{0.5};
-  T export_128bit_ratio{0.25};
-  T crop_units{0.0};
-  T crop_srgb32_ratio{1.0};
-  T crop_half4_64_ratio{0.5};
-  T crop_float1_32_ratio{1.0};
-  T crop_bits64_ratio{0.5};
-  T crop_float4_128_ratio{0.25};
-  T crop_efficiency_ratio{1.0};
-  T blend_rgba8_ratio{1.0};
-  T blend_other_ratio{0.5};
-  T blend_128bit_ratio{0.25};
-  T crop_msaa_samples_per_unit_clk{1.0};
-  bool crop_compressible_at_pixel_rate = true;
-  T resolve_samples_per_clk{0.0};
-
-  bool fast_clear_color = true;
-  bool fast_clear_depth = true;
-  T fast_clear_color_bytes_per_tile{0.5};
-  T fast_clear_depth_bytes_per_tile{4.0};
-  int compression_granule_bytes = 32;
-  bool msaa_color_compression = true;
-  int msaa_color_block_bytes = 0;
-  T color_delta_ratio{1.0};
-  int depth_plane_slots = 4;
-  bool depth_offset_forms = false;
-
-  bool rop_through_l2 = true;
-  T crop_cache_kib{16.0};
-  T zrop_cache_kib{16.0};
-  T l2_size_kib{0.0};
-  T l2_bytes_per_clk{0.0};
-  T l2_latency_cycles{220.0};
-  int l2_ways = 16;
-  T unit_lines_max{512.0};
-  T dram_latency_cycles{400.0};
-  T llc_size_kib{0.0};
-  T dram_bandwidth_gb_s{0.0};
-  T dram_efficiency_ratio{0.8};
-  T dram_cpu_share_ratio{0.0};
-  int dram_channels = 4;
-  int dram_banks = 16;
-  int dram_interleave_bytes = 256;
-  int dram_queue_rows = 4;
-  int dram_write_lines = 32;
-  int dram_write_groups = 2;
-  T dram_row_bytes{2048.0};
-  T dram_row_miss_ns{26.0};
-  T dram_row_cycle_ns{43.0};
-  T dram_turn_ns{8.0};
-  bool tile_based = false;
-  int tile_px = 256;
-  T tile_list_entry_bytes{8.0};
-  T tile_memory_kib{8.0};
-
-  T pass_overhead_us{10.0};
-  int queue_packets = 64;
-  T roofline_exponent{8.0};
+struct GpuValues : HWSIM_GPU_PARTS(HWSIM_PART_VALUES) NoValues {
+  using Scalar = T;
 };
+#undef HWSIM_PART_VALUES
 
 struct GpuConfig : GpuValues<double> {
   std::string id;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "hwsim/base/content_hash.h"
 #include "hwsim/config/assign.h"
 #include "hwsim/gpu/gpu_keys.h"
 
@@ -37,12 +38,9 @@ std::string one_line(std::string text) {
   return text;
 }
 
-/// 64-bit FNV-1a over text: stable between builds and machines, which std::hash is not.
 std::string fnv1a_hex(std::string_view text) {
-  std::uint64_t hash = 14695981039346656037ull;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
   char hex[17];
-  std::snprintf(hex, sizeof hex, "%016llx", static_cast<unsigned long long>(hash));
+  std::snprintf(hex, sizeof hex, "%016llx", static_cast<unsigned long long>(fnv1a(text)));
   return hex;
 }
 

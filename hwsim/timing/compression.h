@@ -7,10 +7,9 @@
 
 #include "hwsim/gpu/gpu_rates.h"
 #include "hwsim/trace/work_trace.h"
+#include "hwsim/units/unit_work.h"
 
 namespace hwsim {
-
-inline constexpr double kTilePixels = 64.0;  // the trace's tiles are 8x8 pixels
 
 /// In the order of the counters: clear, one plane, two, four, offsets of 6 and of 14 bits, raw.
 inline constexpr std::size_t kDepthForms = 7;

@@ -2,6 +2,7 @@
 // The engines: chunks' costs to the time of a pass. T is double to predict, a Jet to fit.
 #include <cmath>
 
+#include "hwsim/timing/engine.h"
 #include "hwsim/timing/packet_flow.h"
 #include "hwsim/timing/service.h"
 
@@ -26,7 +27,8 @@ std::vector<ChunkCost<T>> chunk_costs(const PassWork& pass, const PassShape& sha
   std::vector<ChunkCost<T>> costs;
   if (pass.kind == PassKind::clear) {
     costs.push_back(clear_cost(pass, rates));
-    costs.front().ns[at(Unit::fe)] = fe_ns(shape.sum, rates);
+    const ChunkTraffic<T> none;
+    costs.front().ns[at(Unit::fe)] = units::FrontEnd::service_ns(UnitWork<T>{shape.sum, pass, none}, rates);
     return costs;
   }
   const TrafficModel<T> model = model_traffic(shape, pass, rates);
@@ -51,23 +53,37 @@ void split_shader_stack(PassTime<T>& time) {
   shader -= vertex;
 }
 
+/// The units' totals over the largest of them, raised to a power.
+template <class T>
+struct PowerShares {
+  T peak{0.0}, sum{0.0};  ///< zero where no unit has work
+  std::array<T, kUnitCount> powers;
+
+  PowerShares(const std::array<T, kUnitCount>& busy_ns, const T& exponent) {
+    using std::pow;
+    for (const T& busy : busy_ns) peak = larger(peak, busy);
+    if (!(peak > T(0.0))) return;
+    for (std::size_t u = 0; u < kUnitCount; ++u) {
+      const bool idle = !(busy_ns[u] > T(0.0));  // pow of a Jet has no derivative at zero
+      powers[u] = idle ? T(0.0) : T(pow(T(busy_ns[u] / peak), exponent));
+      sum += powers[u];
+    }
+  }
+  /// Gives each unit its part of the sum.
+  void share(PassTime<T>& time) const {
+    for (std::size_t u = 0; u < kUnitCount; ++u) time.stack_ns[u] = time.time_ns * powers[u] / sum;
+  }
+};
+
 /// Smooth maximum: the p-norm of the units' totals, at least the largest of them. A unit's share is its part
 /// of the sum.
 template <class T>
 void roofline_time(PassTime<T>& time, const GpuRates<T>& rates) {
   using std::pow;
-  T peak(0.0);
-  for (const T& busy : time.busy_ns) peak = larger(peak, busy);
-  if (!(peak > T(0.0))) return;
-  std::array<T, kUnitCount> powers;
-  T sum(0.0);
-  for (std::size_t u = 0; u < kUnitCount; ++u) {
-    const bool idle = !(time.busy_ns[u] > T(0.0));  // pow of a Jet has no derivative at zero
-    powers[u] = idle ? T(0.0) : T(pow(T(time.busy_ns[u] / peak), rates.roofline_exponent));
-    sum += powers[u];
-  }
-  time.time_ns = peak * pow(sum, T(1.0 / rates.roofline_exponent));
-  for (std::size_t u = 0; u < kUnitCount; ++u) time.stack_ns[u] = time.time_ns * powers[u] / sum;
+  const PowerShares<T> shares(time.busy_ns, rates.roofline_exponent);
+  if (!(shares.peak > T(0.0))) return;
+  time.time_ns = shares.peak * pow(shares.sum, T(1.0 / rates.roofline_exponent));
+  shares.share(time);
 }
 
 /// For each chunk, the packets up to its end that fill a place once; more than there are while it is not
@@ -114,8 +130,8 @@ FlowTable<T> flow_table(const std::vector<ChunkCost<T>>& costs, const std::vecto
     // hold, and lines on their way.
     const auto room = [&](std::size_t unit, std::size_t next) {
       T packets(rates.queue_packets);
-      if (unit == at(Unit::shader) || unit == at(Unit::tex)) packets += resident[k];
-      if (next >= at(Unit::l2)) packets += lines_ahead[k];
+      if (stands_in(unit, UnitPlace::cores)) packets += resident[k];
+      if (stands_in(next, UnitPlace::memory)) packets += lines_ahead[k];
       return packets;
     };
     table.packets.push_back(cost.packets);
@@ -123,8 +139,8 @@ FlowTable<T> flow_table(const std::vector<ChunkCost<T>>& costs, const std::vecto
       const bool last = i + 1 == units.size();
       table.ns.push_back(cost.ns[units[i]]);
       table.room_packets.push_back(last ? T(0.0) : room(units[i], units[i + 1]));
-      const bool in_cores = !last && units[i + 1] == at(Unit::tex);
-      const bool leaves_cores = units[i] == at(Unit::tex) || (units[i] == at(Unit::shader) && !in_cores);
+      const bool in_cores = !last && stands_in(units[i + 1], UnitPlace::cores);
+      const bool leaves_cores = stands_in(units[i], UnitPlace::cores) && !in_cores;
       table.latency_ns.push_back(leaves_cores ? cost.shader_latency_ns : T(0.0));
     }
   }
@@ -166,6 +182,19 @@ PassTime<T> time_costs(const std::vector<ChunkCost<T>>& costs, const GpuRates<T>
 template <class T>
 PassTime<T> time_pass(const PassWork& pass, const GpuRates<T>& rates, Engine engine, bool waits) {
   return time_costs(chunk_costs(pass, rates), rates, engine, waits);
+}
+
+/// A pass waits for everything before it where the graph says so; the first of a frame always does.
+inline bool waits(const WorkTrace& trace, std::size_t pass) {
+  return pass == 0 || trace.passes[pass].barrier_before;
+}
+
+/// The time of a frame: the sum of its passes, which do not overlap. `time_ns_of(pass, waits)` is one's.
+template <class T, class TimeOf>
+T sum_of_passes_ns(const WorkTrace& trace, const TimeOf& time_ns_of) {
+  T sum(0.0);
+  for (std::size_t p = 0; p < trace.passes.size(); ++p) sum += time_ns_of(trace.passes[p], waits(trace, p));
+  return sum;
 }
 
 }  // namespace hwsim

@@ -1,11 +1,16 @@
 #include "hwsim/timing/traffic.h"
 
+#include <numeric>
+
 namespace hwsim {
 namespace {
 
 double real(std::uint64_t n) { return static_cast<double>(n); }
 
 }  // namespace
+
+double StreamBytes::total_read() const { return std::accumulate(read.begin(), read.end(), 0.0); }
+double StreamBytes::total_write() const { return std::accumulate(write.begin(), write.end(), 0.0); }
 
 StreamBytes requested_bytes(const PassCounters& c) {
   StreamBytes bytes;

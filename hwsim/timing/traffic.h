@@ -6,37 +6,18 @@
 #include <array>
 #include <cstddef>
 
-#include "hwsim/engines/timing.h"
 #include "hwsim/gpu/gpu_rates.h"
 #include "hwsim/timing/compression.h"
 #include "hwsim/trace/work_trace.h"
+#include "hwsim/units/unit_work.h"
 
 namespace hwsim {
 
-inline constexpr double kTextureLineBytes = 64.0;  // the trace's lines are 64 bytes
-
-constexpr std::size_t at(Stream stream) { return static_cast<std::size_t>(stream); }
-constexpr std::size_t at(Unit unit) { return static_cast<std::size_t>(unit); }
-
-template <class T>
-struct StreamBytesOf {
-  std::array<T, kStreamCount> read, write;
-  StreamBytesOf() {
-    read.fill(T(0.0));
-    write.fill(T(0.0));
-  }
-  StreamBytesOf& operator+=(const StreamBytesOf& other) {
-    for (std::size_t i = 0; i < kStreamCount; ++i) {
-      read[i] += other.read[i];
-      write[i] += other.write[i];
-    }
-    return *this;
-  }
-  T total() const {
-    T sum(0.0);
-    for (std::size_t i = 0; i < kStreamCount; ++i) sum += read[i] + write[i];
-    return sum;
-  }
+/// Bytes by stream; reals, because a miss ratio scales integer counts.
+struct StreamBytes {
+  std::array<double, kStreamCount> read{}, write{};
+  double total_read() const;
+  double total_write() const;
 };
 
 /// What does not depend on the GPU, once a pass.
@@ -226,19 +207,6 @@ TrafficModel<T> model_traffic(const PassShape& shape, const PassWork& pass, cons
   model.dram.read[at(Stream::texture)] = smaller(model.dram.read[at(Stream::texture)], model.l1_fill);
   return model;
 }
-
-template <class T>
-struct ChunkTraffic {
-  StreamBytesOf<T> dram;
-  T l2_bytes{0.0};
-  T l1_fill_bytes{0.0};
-  /// Lines that a subgroup waits for: textures beyond L1, storage always.
-  T l1_missed_lines() const { return (l1_fill_bytes + storage_read_bytes) / kTextureLineBytes; }
-  T l2_missed_lines() const {
-    return (dram.read[at(Stream::texture)] + dram.read[at(Stream::storage)]) / kTextureLineBytes;
-  }
-  T storage_read_bytes{0.0};
-};
 
 /// Rings in memory before and behind geometry shaders, each written and read
 /// (docs/hardware_sources.md#geometry).
