@@ -40,6 +40,25 @@ std::uint32_t crc32(std::span<const std::uint8_t> bytes) {
   return ~crc;
 }
 
+// From the start-of-frame segment, as ISO 10918-1 section B.2.2 gives it.
+ImageSize jpeg_size(std::span<const std::uint8_t> bytes) {
+  const auto word = [&](std::size_t at) {
+    return static_cast<std::uint32_t>(bytes[at] << 8 | bytes[at + 1]);
+  };
+  for (std::size_t at = 2; at + 9 < bytes.size();) {
+    if (bytes[at] != 0xFF) return {};
+    const std::uint8_t marker = bytes[at + 1];
+    if (marker == 0xFF || has_no_payload(marker)) {
+      at += marker == 0xFF ? 1 : 2;
+      continue;
+    }
+    const bool frame = marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+    if (frame) return {word(at + 7), word(at + 5)};
+    at += 2 + word(at + 2);
+  }
+  return {};
+}
+
 }  // namespace
 
 ImageFormat image_format(std::span<const std::uint8_t> bytes) {
@@ -47,6 +66,14 @@ ImageFormat image_format(std::span<const std::uint8_t> bytes) {
   if (starts_with<3>(bytes, {0xFF, 0xD8, 0xFF})) return ImageFormat::jpeg;
   if (starts_with<4>(bytes, {0x76, 0x2F, 0x31, 0x01})) return ImageFormat::exr;
   return ImageFormat::unknown;
+}
+
+ImageSize image_size(std::span<const std::uint8_t> bytes) {
+  const ImageFormat format = image_format(bytes);
+  if (format == ImageFormat::png && bytes.size() >= 24)
+    return {big_endian_32(bytes, 16), big_endian_32(bytes, 20)};
+  if (format == ImageFormat::jpeg) return jpeg_size(bytes);
+  return {};
 }
 
 bool png_is_intact(std::span<const std::uint8_t> bytes) {

@@ -10,6 +10,12 @@ enum class ImageFormat { unknown, png, jpeg, exr };
 /// By the first bytes: names lie, and a glTF buffer has none.
 ImageFormat image_format(std::span<const std::uint8_t> bytes);
 
+struct ImageSize {
+  std::uint32_t width = 0, height = 0;  ///< px
+};
+/// What a PNG's or JPEG's header says, without decoding anything; zeros where there is no such header.
+ImageSize image_size(std::span<const std::uint8_t> bytes);
+
 /// Whether a PNG's chunks reach its end and every critical one has its checksum. libpng would print to
 /// stderr.
 bool png_is_intact(std::span<const std::uint8_t> bytes);

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -32,19 +33,75 @@ bool png_could_hold(const OIIO::ImageSpec& spec, std::size_t byte_count) {
   return stored_bits / 8.0 <= 1032.0 * static_cast<double>(byte_count);
 }
 
+// Which of the file's channels are red, green, blue and alpha; -1: none.
+struct Channels {
+  int rgba[4] = {-1, -1, -1, -1};
+  bool gray = false;  ///< one channel for red, green and blue
+};
+
+// OpenEXR stores channels in the order of the alphabet and layers as "layer.R": their names say what they
+// are, their places do not. Returns false where no name tells a color.
+bool find_exr_channels(const OIIO::ImageSpec& spec, Channels& out) {
+  const auto find = [&](std::string_view wanted) {
+    for (int pass = 0; pass < 2; ++pass)  // the plain name before any layer's
+      for (int i = 0; i < spec.nchannels; ++i) {
+        const std::string& name = spec.channelnames[static_cast<std::size_t>(i)];
+        const std::size_t dot = name.rfind('.');
+        if (pass == 0 ? name == wanted : dot != std::string::npos && name.substr(dot + 1) == wanted) return i;
+      }
+    return -1;
+  };
+  constexpr const char* kNames[4] = {"R", "G", "B", "A"};
+  for (int c = 0; c < 4; ++c) out.rgba[c] = find(kNames[c]);
+  if (out.rgba[0] >= 0 || out.rgba[1] >= 0 || out.rgba[2] >= 0) return true;
+  out.gray = true;
+  out.rgba[0] = out.rgba[1] = out.rgba[2] = find("Y");
+  return out.rgba[0] >= 0;
+}
+
+std::string channel_list(const OIIO::ImageSpec& spec) {
+  std::string out;
+  for (const std::string& name : spec.channelnames) out += (out.empty() ? "" : ", ") + name;
+  return out.substr(0, 200);
+}
+
+// Red, green, blue and alpha in this order, or gray, or gray and alpha.
+Channels channels_in_order(const OIIO::ImageSpec& spec) {
+  Channels out;
+  const int read = std::min(spec.nchannels, 4);
+  out.gray = read < 3;
+  for (int c = 0; c < 3; ++c) out.rgba[c] = out.gray ? 0 : c;
+  if (spec.alpha_channel >= 0 && spec.alpha_channel < read) out.rgba[3] = spec.alpha_channel;
+  return out;
+}
+
 template <class T>
 bool read_rgba(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, T one, T* rgba) {
-  const int read_channels = std::min(spec.nchannels, 4);
-  if (!input.read_image(0, 0, 0, read_channels, type, rgba, 4 * static_cast<OIIO::stride_t>(sizeof(T))))
+  const Channels channels = channels_in_order(spec);
+  if (!input.read_image(0, 0, 0, std::min(spec.nchannels, 4), type, rgba,
+                        4 * static_cast<OIIO::stride_t>(sizeof(T))))
     return false;
-  const bool has_alpha = spec.alpha_channel >= 0 && spec.alpha_channel < read_channels;
-  const bool gray = read_channels < 3;
   const auto count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
   for (std::size_t i = 0; i < count; ++i) {
     T* texel = rgba + 4 * i;
-    const T alpha = has_alpha ? texel[spec.alpha_channel] : one;
-    if (gray) texel[1] = texel[2] = texel[0];
+    const T alpha = channels.rgba[3] >= 0 ? texel[channels.rgba[3]] : one;
+    if (channels.gray) texel[1] = texel[2] = texel[0];
     texel[3] = alpha;
+  }
+  return true;
+}
+
+// Each channel from where its name is; missing colors are 0, missing alpha is 1.
+bool read_named(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const Channels& channels, float* rgba) {
+  const auto count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
+  for (int c = 0; c < 4; ++c) {
+    const int from = channels.rgba[c];
+    if (from < 0)
+      for (std::size_t i = 0; i < count; ++i)
+        rgba[4 * i + static_cast<std::size_t>(c)] = c == 3 ? 1.0f : 0.0f;
+    else if (!input.read_image(0, 0, from, from + 1, OIIO::TypeDesc::FLOAT, rgba + c,
+                               4 * static_cast<OIIO::stride_t>(sizeof(float))))
+      return false;
   }
   return true;
 }
@@ -66,9 +123,15 @@ int decode(const std::uint8_t* bytes, std::size_t byte_count, int as_float, cons
                 "it is " + std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels");
   if (format == "png" && !png_could_hold(spec, byte_count))
     return fail(output, kHwsimImageDamaged, "it is too short for the size that it claims");
+  Channels named;
+  const bool by_name = format == "openexr" && as_float != 0;
+  if (by_name && !find_exr_channels(spec, named))
+    return fail(output, kHwsimImageFailed,
+                "none of its channels (" + channel_list(spec) + ") is R, G, B or Y");
   void* pixels = output.allocate(output.user, spec.width, spec.height);
   if (!pixels) return fail(output, kHwsimImageFailed, "not enough memory");
-  const bool done = as_float
+  const bool done = by_name ? read_named(*input, spec, named, static_cast<float*>(pixels))
+                    : as_float
                         ? read_rgba(*input, spec, OIIO::TypeDesc::FLOAT, 1.0f, static_cast<float*>(pixels))
                         : read_rgba(*input, spec, OIIO::TypeDesc::UINT8, std::uint8_t{255},
                                     static_cast<std::uint8_t*>(pixels));
