@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hwsim/base/diagnostics.h"
+#include "hwsim/base/file_name.h"
 #include "hwsim/config/assign.h"
 #include "hwsim/config/toml_file.h"
 #include "hwsim/gpu/gpu_config.h"
@@ -34,7 +35,7 @@ struct Header {
 };
 
 bool is_path(const std::string& id_or_path) {
-  return id_or_path.ends_with(".toml") || id_or_path.find('/') != std::string::npos;
+  return has_extension(id_or_path, ".toml") || id_or_path.find('/') != std::string::npos;
 }
 
 /// What can name a folder: no slashes, no control characters, not too long.
