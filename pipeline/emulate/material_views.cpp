@@ -1,6 +1,7 @@
 #include "pipeline/emulate/material_views.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <glm/gtc/matrix_inverse.hpp>
 #include <glm/gtc/type_ptr.hpp>
@@ -10,9 +11,21 @@ namespace {
 
 void set_transform(const glm::mat4& world_from_local, DrawInfo& draw) {
   std::memcpy(draw.world_from_local, glm::value_ptr(world_from_local), sizeof(draw.world_from_local));
-  draw.mirrored = glm::determinant(glm::mat3(world_from_local)) < 0.0f;
+  draw.mirrored = is_mirrored(world_from_local);
   const glm::mat3 normal = normal_from_local(world_from_local);
   std::memcpy(draw.normal_from_local, glm::value_ptr(normal), sizeof(draw.normal_from_local));
+}
+
+// Normals are made of products of two elements, and normalized by squares of those: beyond a millionth or a
+// million the elements are divided by the largest one's power of two, which changes no direction.
+glm::mat3 into_range(const glm::mat3& linear) {
+  float largest = 0.0f;
+  for (int i = 0; i < 9; ++i) largest = std::max(largest, std::abs(linear[i / 3][i % 3]));
+  if (largest == 0.0f || (largest > 0x1p-20f && largest < 0x1p20f)) return linear;
+  const int exponent = std::ilogb(largest);
+  glm::mat3 out;
+  for (int i = 0; i < 9; ++i) out[i / 3][i % 3] = std::ldexp(linear[i / 3][i % 3], -exponent);
+  return out;
 }
 
 void set_culling(CullMode cull, bool double_sided, DrawInfo& draw) {
@@ -23,13 +36,18 @@ void set_culling(CullMode cull, bool double_sided, DrawInfo& draw) {
 
 }  // namespace
 
+bool is_mirrored(const glm::mat4& world_from_local) {
+  // In double: the product of three scales of 1e-18 leaves a float's range.
+  return glm::determinant(glm::dmat3(glm::mat3(world_from_local))) < 0.0;
+}
+
 glm::mat3 normal_from_local(const glm::mat4& world_from_local) {
-  const glm::mat3 linear(world_from_local);
+  const glm::mat3 linear = into_range(glm::mat3(world_from_local));
   // The cofactor matrix is the inverse transpose times the determinant: it needs no division, so it also
   // serves transforms that flatten; the sign keeps normals on their side.
   const glm::mat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                            glm::cross(linear[0], linear[1]));
-  return cofactor * (glm::determinant(linear) < 0.0f ? -1.0f : 1.0f);
+  return cofactor * (is_mirrored(world_from_local) ? -1.0f : 1.0f);
 }
 
 MaterialView make_material_view(const Material& material, int index, const TextureStore& textures) {
@@ -43,6 +61,7 @@ MaterialView make_material_view(const Material& material, int index, const Textu
   view.alpha_cutoff = material.alpha_cutoff;
   view.alpha_test = material.alpha_mode == AlphaMode::mask;
   view.double_sided = material.double_sided;
+  view.unlit = material.model == ShadingModel::unlit;
   view.index = index;
   view.base_color_texture = textures.view(material.base_color_texture);
   view.metallic_roughness_texture = textures.view(material.metallic_roughness_texture);

@@ -13,6 +13,9 @@ MaterialView make_material_view(const Material& material, int index, const Textu
 /// given SurfaceVaryings up to kBasic.
 bool needs_full_varyings(const Scene& scene);
 
+/// Whether a transform turns counter-clockwise triangles around.
+bool is_mirrored(const glm::mat4& world_from_local);
+
 /// By which normals follow a transform; not normalized.
 glm::mat3 normal_from_local(const glm::mat4& world_from_local);
 

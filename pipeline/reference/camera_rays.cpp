@@ -11,9 +11,8 @@ CameraRays::CameraRays(const Camera& camera, int width, int height)
       far_m_(camera.far_m),
       orthographic_(camera.orthographic) {
   const glm::dmat4 world_from_view = glm::inverse(glm::dmat4(camera.view_from_world));
-  const double half_height = orthographic_ ? static_cast<double>(camera.ortho_half_height_m)
-                                           : std::tan(static_cast<double>(camera.fov_y_rad) / 2);
-  const double pixel = half_height / half_height_px_;  // pixels are square: the aspect ratio is the image's
+  // Pixels are square: the aspect ratio is the image's.
+  const double pixel = half_height(camera, half_width_px_ / half_height_px_) / half_height_px_;
   position_ = glm::dvec3(world_from_view[3]);
   right_ = glm::dvec3(world_from_view[0]) * pixel;
   down_ = glm::dvec3(world_from_view[1]) * -pixel;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "pipeline/base/parallel.h"
+#include "pipeline/emulate/material_views.h"
 #include "pipeline/reference/interpolate.h"
 
 namespace hwsim::pipeline {
@@ -32,6 +33,7 @@ struct PartData {
   const AlphaLookup* alpha = nullptr;
   int material_index = 0;
   std::uint32_t first_primitive = 0;
+  bool turned_around = false;  ///< triangles in world space, of a mirrored instance
 };
 
 enum class RayKind { camera, camera_without_blend, shadow };
@@ -52,8 +54,9 @@ bool passes_mask(const PartData& part, std::uint32_t primitive, float u, float v
 }
 
 // Embree's geometric normal and the filter's ray are in the mesh's space.
-bool is_front(const RTCRay& ray, float nx, float ny, float nz) {
-  return ray.dir_x * nx + ray.dir_y * ny + ray.dir_z * nz < 0.0f;
+bool is_front(const RTCRay& ray, const RTCHit& hit, bool turned_around) {
+  const float along = ray.dir_x * hit.Ng_x + ray.dir_y * hit.Ng_y + ray.dir_z * hit.Ng_z;
+  return turned_around ? along > 0.0f : along < 0.0f;
 }
 
 void filter(const RTCFilterFunctionNArguments* args) {
@@ -65,7 +68,7 @@ void filter(const RTCFilterFunctionNArguments* args) {
   const Material& material = *part.material;
   const bool blended = material.alpha_mode == AlphaMode::blend && kind != RayKind::camera;
   const bool culled =
-      !material.double_sided && kind != RayKind::shadow && !is_front(ray, hit.Ng_x, hit.Ng_y, hit.Ng_z);
+      !material.double_sided && kind != RayKind::shadow && !is_front(ray, hit, part.turned_around);
   if (blended || culled ||
       (material.alpha_mode == AlphaMode::mask &&
        passes_mask(part, part.first_primitive + hit.primID, hit.u, hit.v)))
@@ -81,9 +84,24 @@ RTCRay embree_ray(const Ray& ray) {
   return r;
 }
 
-bool is_invertible(const glm::mat4& matrix) {
-  const float determinant = glm::determinant(glm::mat3(matrix));
-  return std::isnormal(determinant) && std::isnormal(1.0f / determinant);
+// Embree brings rays into the mesh's space: that takes an inverse, and room for both in a float.
+bool can_be_instanced(const glm::mat4& matrix) {
+  const glm::mat3 linear(matrix);
+  const float determinant = glm::determinant(linear);
+  if (!std::isnormal(determinant) || !std::isnormal(1.0f / determinant)) return false;
+  const glm::mat3 inverse = glm::inverse(linear);
+  constexpr float kLargest = 1e6f;
+  for (int i = 0; i < 9; ++i)
+    if (!(std::abs(linear[i / 3][i % 3]) < kLargest) || !(std::abs(inverse[i / 3][i % 3]) < kLargest))
+      return false;
+  return true;
+}
+
+std::vector<glm::vec3> world_positions(const Mesh& mesh, const glm::mat4& world_from_local) {
+  std::vector<glm::vec3> out;
+  out.reserve(mesh.positions.size());
+  for (const glm::vec3& p : mesh.positions) out.emplace_back(world_from_local * glm::vec4(p, 1.0f));
+  return out;
 }
 
 }  // namespace
@@ -94,15 +112,21 @@ struct ReferenceScene::Impl {
   Device device;
   std::vector<std::vector<PartData>> parts;  // by mesh
   std::vector<EmbreeScene> meshes;
+  /// Instances whose triangles were brought to world space once: flattened ones, and scales beyond Embree's.
+  std::vector<std::vector<PartData>> world_parts;  // by instance; empty: drawn by its mesh's scene
+  std::vector<EmbreeScene> world_meshes;
   EmbreeScene top;
   std::vector<glm::mat3> world_normal_from_local;  // by instance
   float shadow_offset_m = 0.0f;
 
   Impl(const Scene& s, AlphaLookup lookup, int jobs);
   EmbreeScene new_scene() const;
-  void build_mesh(std::size_t index);
-  void attach_part(RTCScene target, RTCBuffer vertices, std::size_t mesh, std::size_t part);
+  EmbreeScene build(const Mesh& mesh, const std::vector<glm::vec3>& positions, bool turned_around,
+                    std::vector<PartData>& parts) const;
+  void attach_part(RTCScene target, RTCBuffer vertices, const Mesh& mesh, PartData& data,
+                   std::size_t part) const;
   void build_top();
+  void attach_instance(std::size_t index);
   bool unoccluded(glm::vec3 from, glm::vec3 direction, float t_max) const;
 };
 
@@ -116,7 +140,9 @@ ReferenceScene::Impl::Impl(const Scene& s, AlphaLookup lookup, int jobs)
     };
   parts.resize(scene.meshes.size());
   meshes.resize(scene.meshes.size());
-  parallel_for(scene.meshes.size(), jobs, [this](std::size_t mesh, int) { build_mesh(mesh); });
+  parallel_for(scene.meshes.size(), jobs, [this](std::size_t i, int) {
+    meshes[i] = build(scene.meshes[i], scene.meshes[i].positions, false, parts[i]);
+  });
   build_top();
   if (const RTCError error = rtcGetDeviceError(device.get()); error != RTC_ERROR_NONE)
     throw std::runtime_error(error == RTC_ERROR_OUT_OF_MEMORY ? "Embree: out of memory"
@@ -131,28 +157,27 @@ EmbreeScene ReferenceScene::Impl::new_scene() const {
 }
 
 // Vertices are copied: Embree reads four bytes past the last one.
-void ReferenceScene::Impl::build_mesh(std::size_t index) {
-  const Mesh& mesh = scene.meshes[index];
+EmbreeScene ReferenceScene::Impl::build(const Mesh& mesh, const std::vector<glm::vec3>& positions,
+                                        bool turned_around, std::vector<PartData>& data) const {
   EmbreeScene built = new_scene();
-  RTCBuffer vertices = rtcNewBuffer(device.get(), mesh.positions.size() * sizeof(glm::vec3) + 16);
+  RTCBuffer vertices = rtcNewBuffer(device.get(), positions.size() * sizeof(glm::vec3) + 16);
   if (!vertices) throw std::runtime_error("Embree: out of memory");
-  std::copy(mesh.positions.begin(), mesh.positions.end(),
-            static_cast<glm::vec3*>(rtcGetBufferData(vertices)));
-  parts[index].resize(mesh.parts.size());
-  for (std::size_t part = 0; part < mesh.parts.size(); ++part)
-    attach_part(built.get(), vertices, index, part);
+  std::copy(positions.begin(), positions.end(), static_cast<glm::vec3*>(rtcGetBufferData(vertices)));
+  data.resize(mesh.parts.size());
+  for (std::size_t part = 0; part < mesh.parts.size(); ++part) {
+    data[part].turned_around = turned_around;
+    attach_part(built.get(), vertices, mesh, data[part], part);
+  }
   rtcReleaseBuffer(vertices);
   rtcCommitScene(built.get());
-  meshes[index] = std::move(built);
+  return built;
 }
 
-void ReferenceScene::Impl::attach_part(RTCScene target, RTCBuffer vertices, std::size_t mesh_index,
-                                       std::size_t part_index) {
-  const Mesh& mesh = scene.meshes[mesh_index];
+void ReferenceScene::Impl::attach_part(RTCScene target, RTCBuffer vertices, const Mesh& mesh, PartData& data,
+                                       std::size_t part_index) const {
   const Mesh::Part& part = mesh.parts[part_index];
   const Material& material = scene.materials[static_cast<std::size_t>(part.material)];
-  PartData& data = parts[mesh_index][part_index];
-  data = {&mesh, &material, &alpha, part.material, part.first_index / 3};
+  data = {&mesh, &material, &alpha, part.material, part.first_index / 3, data.turned_around};
   RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices, 0, sizeof(glm::vec3),
                        mesh.positions.size());
@@ -172,21 +197,34 @@ void ReferenceScene::Impl::attach_part(RTCScene target, RTCBuffer vertices, std:
   rtcReleaseGeometry(geometry);
 }
 
+void ReferenceScene::Impl::attach_instance(std::size_t i) {
+  const Instance& instance = scene.instances[i];
+  const auto mesh = static_cast<std::size_t>(instance.mesh);
+  const bool instanced = can_be_instanced(instance.world_from_local);
+  static const glm::mat4 kIdentity(1.0f);
+  if (instanced) {
+    world_normal_from_local[i] = glm::transpose(glm::inverse(glm::mat3(instance.world_from_local)));
+  } else {
+    world_normal_from_local[i] = normal_from_local(instance.world_from_local);
+    world_meshes[i] =
+        build(scene.meshes[mesh], world_positions(scene.meshes[mesh], instance.world_from_local),
+              is_mirrored(instance.world_from_local), world_parts[i]);
+  }
+  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, instanced ? meshes[mesh].get() : world_meshes[i].get());
+  const glm::mat4& matrix = instanced ? instance.world_from_local : kIdentity;
+  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &matrix[0][0]);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(top.get(), geometry, static_cast<unsigned>(i));
+  rtcReleaseGeometry(geometry);
+}
+
 void ReferenceScene::Impl::build_top() {
   top = new_scene();
   world_normal_from_local.resize(scene.instances.size());
-  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const Instance& instance = scene.instances[i];
-    if (!is_invertible(instance.world_from_local))
-      continue;  // flattened to a plane or a line: nothing to see
-    world_normal_from_local[i] = glm::transpose(glm::inverse(glm::mat3(instance.world_from_local)));
-    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(geometry, meshes[static_cast<std::size_t>(instance.mesh)].get());
-    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &instance.world_from_local[0][0]);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(top.get(), geometry, static_cast<unsigned>(i));
-    rtcReleaseGeometry(geometry);
-  }
+  world_parts.resize(scene.instances.size());
+  world_meshes.resize(scene.instances.size());
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) attach_instance(i);
   rtcCommitScene(top.get());
   RTCBounds bounds{};
   rtcGetSceneBounds(top.get(), &bounds);
@@ -216,13 +254,17 @@ Visibility ReferenceScene::trace(const Ray& ray, bool with_blend) const {
   hit.instance = query.hit.instID[0];
   hit.part = query.hit.geomID;
   const Instance& instance = impl_->scene.instances[hit.instance];
-  hit.primitive =
-      impl_->parts[static_cast<std::size_t>(instance.mesh)][hit.part].first_primitive + query.hit.primID;
+  const std::vector<PartData>& own = impl_->world_parts[hit.instance];
+  const PartData& part =
+      own.empty() ? impl_->parts[static_cast<std::size_t>(instance.mesh)][hit.part] : own[hit.part];
+  hit.primitive = part.first_primitive + query.hit.primID;
   hit.t = query.ray.tfar;
   hit.u = query.hit.u;
   hit.v = query.hit.v;
-  const glm::vec3 normal = impl_->world_normal_from_local[hit.instance] *
-                           glm::vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
+  const glm::vec3 face(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
+  const glm::vec3 normal = own.empty()          ? impl_->world_normal_from_local[hit.instance] * face
+                           : part.turned_around ? -face
+                                                : face;
   hit.front_face = glm::dot(ray.direction, normal) < 0.0f;
   return hit;
 }
