@@ -4,6 +4,7 @@
 
 #include "cli/commands/commands.h"
 #include "cli/terminal/answer.h"
+#include "hwsim/base/file_name.h"
 #include "lab/base/table.h"
 #include "lab/store/cache.h"
 #include "pipeline/open/scene_check.h"
@@ -63,7 +64,7 @@ Table transposed(const Table& table) {
   return result;
 }
 
-bool is_file(const std::string& name) { return name.ends_with(".gltf") || name.ends_with(".glb"); }
+bool is_file(const std::string& name) { return has_extension(name, ".gltf") || has_extension(name, ".glb"); }
 
 /// What there is to say about a scene that loads; of a file, what it uses too.
 std::vector<Diagnostic> findings(const std::string& name, const pipeline::Scene& scene) {

@@ -102,6 +102,10 @@ constexpr ErrorCode kCodes[] = {
     {"S012", "scene too large", "The limits keep a damaged file from taking all memory."},
     {"S013", "image cannot be read", "A texture's image is missing or not readable."},
     {"S014", "no glTF 2.0 scene", "The version is missing or not 2.x, or the file holds no scene."},
+    {"S015", "file outside of the scene's folder",
+     "A URI leads out of the folder of the .gltf file, by `..`, an absolute path, a link or a scheme. Only "
+     "files "
+     "below it are read, so that a scene from a stranger shows none of your files."},
     {"S101", "extension ignored",
      "The extension is optional and not supported; the note says what is drawn instead. The image may differ "
      "from that of other viewers."},
@@ -113,16 +117,33 @@ constexpr ErrorCode kCodes[] = {
     {"S107", "normals or tangents repaired", "They were not of unit length."},
     {"S108", "no texture coordinates", "A texture is used without them: one texel colors everything."},
     {"S109", "wire radius ignored",
-     "A wire needs normals outward and tangents along its axis beside _RADIUS."},
+     "A wire needs normals outward and tangents along its axis beside _HWSIM_RADIUS."},
     {"S110", "motion ignored", "Animations, skins and morph targets: the scene is drawn as modeled."},
     {"S111", "factors clamped", "Material factors outside 0 to 1 were clamped."},
     {"S112", "texture left out", "It uses an extension or a coordinate set that is not supported."},
     {"S113", "light left out or turned", "Its type is unknown, or its direction cannot be told."},
     {"S114", "first scene taken", "The file has several scenes and names none as the default."},
-    {"S115", "camera left out", "Its node has a scale of zero."},
+    {"S115", "camera left out",
+     "Its values are none that glTF 2.0 allows, or its node has a scale of zero. The other cameras are "
+     "there."},
     {"S116", "unused meshes not loaded", "No node of the scene refers to them."},
     {"S117", "sun added", "The file has no lights."},
     {"S118", "camera added or completed", "The file has no camera, or one without a far plane."},
+    {"S119", "unused buffers not read", "Nothing that is drawn refers to them; they may be missing."},
+    {"S120", "scene moved and scaled",
+     "Arithmetic is in single precision: a scene at map coordinates, a tiny or a huge one is moved and "
+     "scaled in "
+     "double precision while it is loaded, cameras and lights with it. The picture is that of the same scene "
+     "at the "
+     "origin, in meters."},
+    {"S121", "integers taken as fractions",
+     "Colors and texture coordinates in whole numbers lack the flag `normalized`. They are divided by the "
+     "largest "
+     "whole number, as every exporter that is known to forget the flag means them."},
+    {"S122", "lights exposed",
+     "The lights are so bright that all would be white, as lights in lux and candela are: they are scaled "
+     "until a "
+     "white surface shows about 1. --exposure sets the factor."},
     {"S201", "unknown scene",
      "The name is neither a .gltf or .glb file nor a generator of `hwsim list scenes`."},
     {"S202", "unknown parameter of a generator", "`hwsim show GENERATOR` lists its parameters."},
@@ -169,6 +190,13 @@ constexpr ErrorCode kCodes[] = {
      "The folder is missing, full or not writable, or the image is empty."},
     {"I006", "unknown image format",
      "PNG, JPEG and OpenEXR are read, PNG and OpenEXR written; the name's ending says which."},
+
+    {"P001", "nothing is drawn",
+     "The picture shows the background alone: the camera looks elsewhere, the scene is out of its range, or "
+     "its "
+     "materials let everything through."},
+    {"P002", "picture is white", "More than half of what is drawn is white: the light is too bright."},
+    {"P003", "picture is black", "More than half of what is drawn is black: hardly any light reaches it."},
 
     {"G001", "size out of range",
      "An image or dispatch of the technique is empty or larger than this GPU allows "

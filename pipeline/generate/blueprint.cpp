@@ -126,7 +126,7 @@ class GlbEncoder {
     add_attribute(attributes, "TANGENT", s.tangents, "VEC4");
     if (blueprint_.looks[static_cast<std::size_t>(piece.look)].texture >= 0)
       add_attribute(attributes, "TEXCOORD_0", s.uvs, "VEC2");
-    add_attribute(attributes, "_RADIUS", s.radius, "SCALAR");
+    add_attribute(attributes, "_HWSIM_RADIUS", s.radius, "SCALAR");
     return {{"attributes", attributes}, {"indices", add_indices(s)}, {"material", piece.look}};
   }
 

@@ -30,7 +30,7 @@ void add_panel(Surface& s, const glm::dvec3& corner, const glm::dvec3& side_u, c
 /// A round pipe along a path, `sides` around, smooth normals, closed by flat caps if wanted.
 void add_tube(Surface& s, const std::vector<glm::dvec3>& path, double radius, int sides, bool caps);
 
-/// The same as a wire: positions on the center line, outward normals, the axis as tangent, and _RADIUS.
+/// The same as a wire: positions on the center line, outward normals, the axis as tangent, and _HWSIM_RADIUS.
 void add_wire(Surface& s, const std::vector<glm::dvec3>& path, double radius, int sides);
 
 /// A profile of (radius, height) turned around the y axis through `foot`.

@@ -1,4 +1,4 @@
-// Power poles with sagging wires. The wires carry _RADIUS: their vertices lie on the center line (see
+// Power poles with sagging wires. The wires carry _HWSIM_RADIUS: their vertices lie on the center line (see
 // Mesh::radius).
 #include <cmath>
 

@@ -110,14 +110,14 @@ void for_each_component(const Report& report, const tinygltf::Model& model,
 }  // namespace
 
 std::vector<float> read_floats(const Report& report, const tinygltf::Model& model, int index, int components,
-                               const std::string& where) {
+                               const std::string& where, bool normalized) {
   const tinygltf::Accessor& accessor = accessor_at(model, index);
   if (tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)) != components)
     report.fail("S004", where + ": " + element("accessors", static_cast<std::size_t>(index)) + " must have " +
                             std::to_string(components) + " components");
   std::vector<float> out(accessor.count * static_cast<std::size_t>(components));
   for_each_component(report, model, accessor, where, [&](std::size_t e, std::size_t i, auto value) {
-    out[e * static_cast<std::size_t>(components) + i] = to_float(value, accessor.normalized);
+    out[e * static_cast<std::size_t>(components) + i] = to_float(value, normalized);
   });
   const auto bad = std::find_if(out.begin(), out.end(), [](float v) { return !std::isfinite(v); });
   if (bad != out.end())

@@ -7,6 +7,8 @@
 #include <limits>
 #include <system_error>
 
+#include "hwsim/base/file_name.h"
+
 namespace hwsim::pipeline::gltf {
 namespace {
 
@@ -47,7 +49,9 @@ void check_glb(Report& report, Container& c) {
   if (next + kChunkHeaderBytes > total || word_at(c, next + 4) != kBinChunk)
     report.fail("S002", "the GLB's second chunk is not a BIN chunk", kExportAgain);
   c.bin_bytes = word_at(c, next);
-  if (c.bin_bytes < 4 || c.bin_bytes % 4 != 0 || next + kChunkHeaderBytes + c.bin_bytes > total)
+  c.bin_begin = next + kChunkHeaderBytes;
+  // Exporters write an empty chunk where all data is elsewhere.
+  if (c.bin_bytes % 4 != 0 || c.bin_begin + c.bin_bytes > total)
     report.fail("S002",
                 "the GLB's BIN chunk has an impossible length (" + std::to_string(c.bin_bytes) + " bytes)",
                 kExportAgain);
@@ -79,7 +83,7 @@ Container read_container(Report& report, std::size_t max_file_bytes) {
   Container c;
   if (!read_bytes(path, max_file_bytes, c.bytes)) report.fail("S001", "the file cannot be read");
   const bool magic = c.bytes.size() >= 4 && std::memcmp(c.bytes.data(), "glTF", 4) == 0;
-  if (std::filesystem::path(path).extension() == ".glb" && !magic)
+  if (has_extension(path, ".glb") && !magic)
     report.fail("S002",
                 c.bytes.empty() ? "the file is empty" : "not a GLB: the file does not begin with \"glTF\"",
                 kExportAgain);

@@ -1,6 +1,7 @@
 #pragma once
 // The file as bytes: GLB chunks or JSON text, checked before any parser sees them.
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,11 +14,12 @@ struct Container {
   std::vector<std::uint8_t> bytes;
   bool binary = false;
   std::size_t json_begin = 0, json_bytes = 0;
-  std::size_t bin_bytes = 0;  ///< size of the BIN chunk, 0: none
+  std::size_t bin_begin = 0, bin_bytes = 0;  ///< place and size of the BIN chunk; 0 bytes: none
 
   std::string_view json() const {
     return {reinterpret_cast<const char*>(bytes.data()) + json_begin, json_bytes};
   }
+  std::span<const std::uint8_t> bin() const { return {bytes.data() + bin_begin, bin_bytes}; }
 };
 
 /// Reads and checks the container. Throws InputError (S001 unreadable, S002 damaged, S012 too large).

@@ -10,9 +10,8 @@ namespace hwsim::pipeline::gltf {
 
 std::string effect_of_extension(const std::string& name) {
   if (is_honored_extension(name)) return "";
-  constexpr std::array<std::pair<const char*, const char*>, 8> kEffects = {
-      {{"KHR_texture_transform", "texture coordinates are used as they are"},
-       {"KHR_texture_basisu", "textures with no PNG or JPEG beside the KTX2 image are left out"},
+  constexpr std::array<std::pair<const char*, const char*>, 7> kEffects = {
+      {{"KHR_texture_basisu", "textures with no PNG or JPEG beside the KTX2 image are left out"},
        {"EXT_texture_webp", "textures with no PNG or JPEG beside the WebP image are left out"},
        {"KHR_draco_mesh_compression", "the uncompressed accessors are read"},
        {"EXT_meshopt_compression", "the uncompressed buffers are read"},
@@ -25,12 +24,13 @@ std::string effect_of_extension(const std::string& name) {
   return "the file is drawn as if it were absent";
 }
 
-void note_extensions(Report& report, const tinygltf::Model& model) {
+void note_extensions(Report& report, const Source& source) {
+  const tinygltf::Model& model = source.model;
   const std::set<std::string> used(model.extensionsUsed.begin(), model.extensionsUsed.end());
   for (const std::string& name : used)
     if (const std::string effect = effect_of_extension(name); !effect.empty())
       report.note("S101", "the extension " + name + " is not supported: " + effect);
-  if (!model.animations.empty()) report.note("S110", "animations are ignored: nodes stay where they are");
+  if (source.has_animations) report.note("S110", "animations are ignored: nodes stay where they are");
 }
 
 }  // namespace hwsim::pipeline::gltf

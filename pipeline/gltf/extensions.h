@@ -11,6 +11,6 @@ namespace hwsim::pipeline::gltf {
 std::string effect_of_extension(const std::string& name);
 
 /// Notes each extension that is used and ignored, and animations.
-void note_extensions(Report& report, const tinygltf::Model& model);
+void note_extensions(Report& report, const Source& source);
 
 }  // namespace hwsim::pipeline::gltf

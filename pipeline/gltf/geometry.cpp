@@ -8,6 +8,7 @@
 #include <string>
 
 #include "pipeline/gltf/accessor.h"
+#include "pipeline/gltf/placement.h"
 #include "pipeline/gltf/vertices.h"
 
 namespace hwsim::pipeline::gltf {
@@ -20,16 +21,6 @@ const tinygltf::Accessor& accessor_at(const tinygltf::Model& model, int index) {
 int attribute(const tinygltf::Primitive& primitive, const char* name) {
   const auto found = primitive.attributes.find(name);
   return found == primitive.attributes.end() ? -1 : found->second;
-}
-
-std::uint64_t triangles_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
-  const int source = primitive.indices >= 0 ? primitive.indices : attribute(primitive, "POSITION");
-  if (source < 0) return 0;
-  const std::uint64_t count = accessor_at(model, source).count;
-  if (primitive.mode == TINYGLTF_MODE_TRIANGLES) return count / 3;
-  const bool chained =
-      primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP || primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN;
-  return chained && count > 2 ? count - 2 : 0;
 }
 
 // glTF 2.0 section 3.7.2.1: strips {i, i+1+i%2, i+2-i%2}, fans {i+1, i+2, 0}.
@@ -51,10 +42,13 @@ std::vector<std::uint32_t> triangle_list(const std::vector<std::uint32_t>& v, in
 struct Needs {
   bool uv0 = false, uv1 = false, tangents = false;
   int tangent_uv_set = 0;
+  UvSources uv_sources{};
 };
 
-Needs needs_of(const Material& material) {
+Needs needs_of(const MaterialSet& set, std::size_t index) {
+  const Material& material = set.materials[index];
   Needs needs;
+  needs.uv_sources = set.uv_sources[index];
   for (const TextureRef* ref :
        {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
         &material.emissive_texture, &material.occlusion_texture}) {
@@ -66,14 +60,21 @@ Needs needs_of(const Material& material) {
   return needs;
 }
 
+/// The radius of wires. The name carries this program's mark: others write _RADIUS for something else.
+constexpr const char* kRadiusAttribute = "_HWSIM_RADIUS";
+
 class MeshBuilder {
  public:
-  MeshBuilder(Report& report, const tinygltf::Model& model, const std::vector<Material>& materials)
+  MeshBuilder(Report& report, const tinygltf::Model& model, const MaterialSet& materials)
       : report_(report), model_(model), materials_(materials) {}
 
   void add(const tinygltf::Primitive& primitive, const std::string& where, int material) {
     if (!draws_triangles(primitive, where)) return;
-    const Needs needs = needs_of(materials_[static_cast<std::size_t>(material)]);
+    refuse_compressed(primitive, where);
+    if (attribute(primitive, "_RADIUS") >= 0)
+      report_.note("S109", "_RADIUS is another program's attribute and is ignored: wires carry _HWSIM_RADIUS",
+                   where);
+    const Needs needs = needs_of(materials_, static_cast<std::size_t>(material));
     std::vector<std::uint32_t> indices = read_triangles(primitive, where);
     if (indices.empty())
       return report_.note("S105", "a primitive has no whole triangle and draws nothing", where);
@@ -89,11 +90,14 @@ class MeshBuilder {
     for (const std::uint32_t index : indices) mesh_.indices.push_back(base + index);
   }
 
-  Mesh take() {
+  BuiltMesh take() {
     mesh_.index_bytes = index_bytes_ ? index_bytes_ : 4;
     place_wire_surfaces();
+    BuiltMesh out;
+    out.local_from_mesh = bring_into_range();
     set_bounds();
-    return std::move(mesh_);
+    out.mesh = std::move(mesh_);
+    return out;
   }
 
  private:
@@ -107,6 +111,18 @@ class MeshBuilder {
     if (attribute(primitive, "POSITION") >= 0) return true;
     report_.note("S104", "a primitive without positions draws nothing", where);
     return false;
+  }
+
+  // Compressed data leaves accessors without bytes: drawn, they would be one point.
+  void refuse_compressed(const tinygltf::Primitive& primitive, const std::string& where) const {
+    if (primitive.extensions.count("KHR_draco_mesh_compression") == 0) return;
+    const tinygltf::Accessor& positions = accessor_at(model_, attribute(primitive, "POSITION"));
+    if (positions.bufferView >= 0 || positions.sparse.isSparse) return;
+    report_.fail("S006",
+                 where +
+                     " is compressed by KHR_draco_mesh_compression, which is not supported, and holds no "
+                     "uncompressed data",
+                 "export without Draco compression");
   }
 
   std::vector<std::uint32_t> read_triangles(const tinygltf::Primitive& primitive, const std::string& where) {
@@ -145,7 +161,8 @@ class MeshBuilder {
   std::uint32_t add_shared(const tinygltf::Primitive& primitive, const std::string& where, const Needs& needs,
                            std::vector<std::uint32_t>& indices) {
     const bool own_copy = needs.tangents && attribute(primitive, "TANGENT") < 0;
-    std::string key = std::to_string(needs.uv0) + std::to_string(needs.uv1) + std::to_string(needs.tangents);
+    std::string key = std::to_string(needs.uv0) + std::to_string(needs.uv1) + std::to_string(needs.tangents) +
+                      needs.uv_sources.key();
     for (const auto& [name, accessor] : primitive.attributes)
       key += ' ' + name + ' ' + std::to_string(accessor);
     if (const auto found = base_of_.find(key); found != base_of_.end() && !own_copy) return found->second;
@@ -167,6 +184,25 @@ class MeshBuilder {
     return static_cast<std::uint32_t>(base);
   }
 
+  // Colors and texture coordinates in integers are fractions of the largest one; some exporters forget the
+  // flag, and none is known to mean anything else. Quantized meshes may have whole texture coordinates.
+  bool must_be_normalized(int accessor, const std::string& name, const std::string& where) {
+    const bool color = name == "COLOR_0", coordinates = name == "TEXCOORD_0" || name == "TEXCOORD_1";
+    const tinygltf::Accessor& source = accessor_at(model_, accessor);
+    if (!(color || coordinates) || source.normalized || source.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT)
+      return source.normalized;
+    const auto& used = model_.extensionsUsed;
+    if (coordinates && std::find(used.begin(), used.end(), "KHR_mesh_quantization") != used.end())
+      return false;
+    report_.warn(
+        "S121",
+        std::string(color ? "colors" : "texture coordinates") +
+            " in whole numbers lack the flag `normalized`: they are taken as fractions of the largest "
+            "one, as exporters mean it",
+        where + " attribute " + name);
+    return true;
+  }
+
   template <class T>
   std::vector<T> read_attribute(const tinygltf::Primitive& primitive, const char* name,
                                 const std::string& where) {
@@ -174,7 +210,8 @@ class MeshBuilder {
     const int accessor = attribute(primitive, name);
     if (accessor < 0) return {};
     const std::string place = where + " attribute " + name;
-    const std::vector<float> flat = read_floats(report_, model_, accessor, kComponents, place);
+    const std::vector<float> flat =
+        read_floats(report_, model_, accessor, kComponents, place, must_be_normalized(accessor, name, where));
     const std::size_t wanted = accessor_at(model_, attribute(primitive, "POSITION")).count;
     if (flat.size() != wanted * kComponents)
       report_.fail("S009", place + " has " + std::to_string(flat.size() / kComponents) +
@@ -195,14 +232,23 @@ class MeshBuilder {
     return out;
   }
 
+  std::vector<glm::vec2> read_coordinates(const tinygltf::Primitive& primitive, const UvSource& source,
+                                          const std::string& where) {
+    auto out =
+        read_attribute<glm::vec2>(primitive, source.file_set == 1 ? "TEXCOORD_1" : "TEXCOORD_0", where);
+    if (source.transform == UvTransform{}) return out;
+    for (glm::vec2& uv : out) uv = source.transform.applied(uv);
+    return out;
+  }
+
   Vertices read_vertices(const tinygltf::Primitive& primitive, const std::string& where, const Needs& needs) {
     Vertices v;
     v.positions = read_attribute<glm::vec3>(primitive, "POSITION", where);
     v.normals = read_attribute<glm::vec3>(primitive, "NORMAL", where);
-    v.uv0 = read_attribute<glm::vec2>(primitive, "TEXCOORD_0", where);
-    v.uv1 = read_attribute<glm::vec2>(primitive, "TEXCOORD_1", where);
+    v.uv0 = read_coordinates(primitive, needs.uv_sources.sets[0], where);
+    v.uv1 = read_coordinates(primitive, needs.uv_sources.sets[1], where);
     v.colors = read_colors(primitive, where);
-    v.radius = read_attribute<float>(primitive, "_RADIUS", where);
+    v.radius = read_attribute<float>(primitive, kRadiusAttribute, where);
     if (needs.tangents || !v.radius.empty())
       v.tangents = read_attribute<glm::vec4>(primitive, "TANGENT", where);
     check_wire(v, where);
@@ -217,14 +263,15 @@ class MeshBuilder {
   void check_wire(Vertices& v, const std::string& where) {
     if (v.radius.empty()) return;
     if (v.normals.empty() || v.tangents.empty()) {
-      report_.warn("S109", "_RADIUS is ignored: a wire needs NORMAL (outward) and TANGENT (along its axis)",
+      report_.warn("S109",
+                   "_HWSIM_RADIUS is ignored: a wire needs NORMAL (outward) and TANGENT (along its axis)",
                    where);
       v.radius.clear();
       v.tangents.clear();
       return;
     }
     const auto bad = std::find_if(v.radius.begin(), v.radius.end(), [](float r) { return r < 0.0f; });
-    if (bad != v.radius.end()) report_.fail("S010", where + " attribute _RADIUS has a negative value");
+    if (bad != v.radius.end()) report_.fail("S010", where + " attribute _HWSIM_RADIUS has a negative value");
   }
 
   void finish_tangents(Vertices& v, const std::vector<std::uint32_t>& indices, const std::string& where,
@@ -241,12 +288,21 @@ class MeshBuilder {
   void count_stored_bytes(const tinygltf::Primitive& primitive) {
     int bytes = 0;
     for (const char* name :
-         {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0", "_RADIUS"})
+         {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0", kRadiusAttribute})
       if (const int accessor = attribute(primitive, name); accessor >= 0)
         bytes += element_bytes(model_, accessor);
     mesh_.vertex_bytes = std::max(mesh_.vertex_bytes, bytes);
     if (primitive.indices >= 0)
       index_bytes_ = std::max(index_bytes_, element_bytes(model_, primitive.indices));
+  }
+
+  // Far coordinates and far sizes cost precision, or leave it: the nodes' matrices take them over.
+  glm::dmat4 bring_into_range() {
+    const Placement placement = place_mesh(bounds_of(mesh_.positions));
+    if (placement.is_identity()) return glm::dmat4(1.0);
+    for (glm::vec3& p : mesh_.positions) p = glm::vec3((glm::dvec3(p) - placement.origin) * placement.scale);
+    for (float& radius : mesh_.radius) radius = static_cast<float>(radius * placement.scale);
+    return placement.inverse_matrix();
   }
 
   void set_bounds() {
@@ -285,7 +341,7 @@ class MeshBuilder {
 
   Report& report_;
   const tinygltf::Model& model_;
-  const std::vector<Material>& materials_;
+  const MaterialSet& materials_;
   Mesh mesh_;
   int index_bytes_ = 0;
   std::map<std::string, std::uint32_t> base_of_;
@@ -293,8 +349,8 @@ class MeshBuilder {
 
 }  // namespace
 
-Mesh build_mesh(Report& report, const tinygltf::Model& model, int mesh_index,
-                const std::vector<Material>& materials, int default_material) {
+BuiltMesh build_mesh(Report& report, const tinygltf::Model& model, int mesh_index,
+                     const MaterialSet& materials, int default_material) {
   const auto place = static_cast<std::size_t>(mesh_index);
   const tinygltf::Mesh& source = model.meshes[place];
   MeshBuilder builder(report, model, materials);
@@ -305,9 +361,9 @@ Mesh build_mesh(Report& report, const tinygltf::Model& model, int mesh_index,
       report.note("S110", "morph targets are ignored: the base shape is drawn", where);
     builder.add(primitive, where, primitive.material >= 0 ? primitive.material : default_material);
   }
-  Mesh mesh = builder.take();
-  mesh.name = source.name.empty() ? element("meshes", place) : source.name;
-  return mesh;
+  BuiltMesh built = builder.take();
+  built.mesh.name = source.name.empty() ? element("meshes", place) : source.name;
+  return built;
 }
 
 std::uint64_t triangle_count(const tinygltf::Model& model, int mesh) {

@@ -2,16 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <future>
-#include <set>
 #include <string>
 #include <utility>
 
+#include "pipeline/gltf/exposure.h"
 #include "pipeline/gltf/extensions.h"
 #include "pipeline/gltf/geometry.h"
+#include "pipeline/gltf/load.h"
 #include "pipeline/gltf/materials.h"
 #include "pipeline/gltf/nodes.h"
+#include "pipeline/gltf/placement.h"
 #include "pipeline/gltf/source.h"
 #include "pipeline/scene/framing.h"
 
@@ -40,32 +43,13 @@ std::vector<bool> materials_in_use(const tinygltf::Model& model, const std::vect
   return used;
 }
 
-// Primitives of a mesh that share their positions store them once.
-std::uint64_t stored_vertices(const tinygltf::Model& model, const tinygltf::Mesh& mesh) {
-  std::set<int> accessors;
-  for (const tinygltf::Primitive& primitive : mesh.primitives)
-    if (const auto p = primitive.attributes.find("POSITION"); p != primitive.attributes.end())
-      accessors.insert(p->second);
-  std::uint64_t count = 0;
-  for (const int accessor : accessors) count += model.accessors[static_cast<std::size_t>(accessor)].count;
-  return count;
-}
-
-// Counts alone, before any vertex is read: a small file can ask for a terabyte, by instances (bounded by the
-// caller's limit) or by many meshes over the same bytes (bounded here: no honest file stores less than a byte
-// for each).
-void check_budget(const Report& report, const tinygltf::Model& model, const std::vector<PlacedNode>& nodes,
-                  const std::vector<bool>& used_meshes, std::uint64_t max_triangles) {
-  constexpr std::uint64_t kFreeElements = std::uint64_t{1} << 25;
-  std::uint64_t allowed = kFreeElements, triangles_stored = 0, vertices = 0, drawn = 0;
-  for (const tinygltf::Buffer& buffer : model.buffers) allowed += buffer.data.size();
+// A small file can draw a terabyte by instances.
+void check_drawn_triangles(const Report& report, const tinygltf::Model& model,
+                           const std::vector<PlacedNode>& nodes, std::uint64_t max_triangles) {
   std::vector<std::uint64_t> triangles(model.meshes.size(), 0);
-  for (std::size_t m = 0; m < model.meshes.size(); ++m) {
-    if (!used_meshes[m]) continue;
+  for (std::size_t m = 0; m < model.meshes.size(); ++m)
     triangles[m] = gltf::triangle_count(model, static_cast<int>(m));
-    triangles_stored += triangles[m];
-    vertices += stored_vertices(model, model.meshes[m]);
-  }
+  std::uint64_t drawn = 0;
   for (const PlacedNode& placed : nodes)
     if (const int mesh = node_at(model, placed).mesh; mesh >= 0)
       drawn += triangles[static_cast<std::size_t>(mesh)];
@@ -74,55 +58,123 @@ void check_budget(const Report& report, const tinygltf::Model& model, const std:
                 "the scene draws " + std::to_string(drawn) + " triangles, the limit is " +
                     std::to_string(max_triangles),
                 "draw fewer instances, or reduce the meshes");
-  if (std::max(triangles_stored, vertices) > allowed)
-    report.fail("S012",
-                "the meshes store " + std::to_string(triangles_stored) + " triangles and " +
-                    std::to_string(vertices) + " vertices, far more than the file's bytes can describe",
-                "let several nodes refer to one mesh instead of copying it");
 }
 
-void add_meshes(Scene& scene, Report& report, const tinygltf::Model& model,
-                const std::vector<PlacedNode>& nodes, const std::vector<bool>& used) {
+// A mesh drawn by a node, in the file's coordinates.
+struct DrawnMesh {
+  int mesh = 0;
+  glm::dmat4 file_from_mesh{1.0};
+  std::string name;
+};
+
+std::vector<DrawnMesh> build_meshes(Scene& scene, Report& report, const tinygltf::Model& model,
+                                    const std::vector<PlacedNode>& nodes, const gltf::MaterialSet& materials,
+                                    const std::vector<bool>& used) {
   std::vector<int> place(model.meshes.size(), -1);
+  std::vector<glm::dmat4> local_from_mesh;
   const int default_material = static_cast<int>(model.materials.size());
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {
     if (!used[m]) {
       report.note("S116", "meshes that the scene does not use were not loaded", gltf::element("meshes", m));
       continue;
     }
-    Mesh mesh = gltf::build_mesh(report, model, static_cast<int>(m), scene.materials, default_material);
-    if (mesh.parts.empty()) continue;
+    gltf::BuiltMesh built = gltf::build_mesh(report, model, static_cast<int>(m), materials, default_material);
+    if (built.mesh.parts.empty()) continue;
     place[m] = static_cast<int>(scene.meshes.size());
-    scene.meshes.push_back(std::move(mesh));
+    scene.meshes.push_back(std::move(built.mesh));
+    local_from_mesh.push_back(built.local_from_mesh);
   }
+  std::vector<DrawnMesh> drawn;
   for (const PlacedNode& placed : nodes) {
     const tinygltf::Node& node = node_at(model, placed);
     if (node.mesh < 0 || place[static_cast<std::size_t>(node.mesh)] < 0) continue;
     const std::string where = gltf::element("nodes", static_cast<std::size_t>(placed.node));
-    if (node.skin >= 0)
-      report.note("S110", "skins are ignored: meshes are drawn as modeled, placed by their node", where);
-    scene.instances.push_back({place[static_cast<std::size_t>(node.mesh)], glm::mat4(placed.world_from_local),
-                               node.name.empty() ? where : node.name});
+    // glTF 2.0 section 3.7.3.3: joints place a skinned mesh, its node's own transformation does not.
+    const bool skinned = node.skin >= 0;
+    if (skinned)
+      report.note("S110",
+                  "skins are ignored: skinned meshes are drawn as modeled, their nodes do not move them",
+                  where);
+    const int mesh = place[static_cast<std::size_t>(node.mesh)];
+    const glm::dmat4& local = local_from_mesh[static_cast<std::size_t>(mesh)];
+    const glm::dmat4 matrix = skinned                    ? local
+                              : local == glm::dmat4(1.0) ? placed.world_from_local
+                                                         : placed.world_from_local * local;
+    drawn.push_back({mesh, matrix, node.name.empty() ? where : node.name});
   }
+  return drawn;
 }
 
-void check_world_bounds(const Report& report, const SceneStats& totals) {
-  constexpr float kMax = 1e18f;  // squares stay inside float's range
-  for (int i = 0; i < 3; ++i)
-    if (!(std::abs(totals.bounds_min[i]) <= kMax) || !(std::abs(totals.bounds_max[i]) <= kMax))
-      report.fail("S010", "the scene reaches farther than 1e18 m from the origin", "scale the scene down");
+double largest_scale(const glm::dmat4& m) {
+  return std::max(
+      {glm::length(glm::dvec3(m[0])), glm::length(glm::dvec3(m[1])), glm::length(glm::dvec3(m[2]))});
 }
 
-void add_view_and_light(Scene& scene, Report& report, const tinygltf::Model& model,
-                        const std::vector<PlacedNode>& nodes) {
+gltf::Placement choose_placement(const Report& report, const Scene& scene,
+                                 const std::vector<DrawnMesh>& drawn, const tinygltf::Model& model,
+                                 const std::vector<PlacedNode>& nodes) {
+  constexpr double kMaxM = 1e18;
+  gltf::Box bounds;
+  double scale = 0.0, view_distance_m = 0.0;
+  for (const DrawnMesh& d : drawn) {
+    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(d.mesh)];
+    bounds.add({glm::dvec3(mesh.bounds_min), glm::dvec3(mesh.bounds_max)}, d.file_from_mesh);
+    scale = std::max(scale, largest_scale(d.file_from_mesh));
+    if (!bounds.empty() && !(glm::length(bounds.low) < 2 * kMaxM && glm::length(bounds.high) < 2 * kMaxM))
+      report.fail("S010", d.name + " reaches farther than 1e18 m from the origin", "scale the scene down");
+  }
+  for (const PlacedNode& placed : nodes)
+    if (node_at(model, placed).camera >= 0)
+      view_distance_m =
+          std::max(view_distance_m, glm::length(glm::dvec3(placed.world_from_local[3]) - bounds.center()));
+  return gltf::place_scene(bounds, scale, view_distance_m);
+}
+
+// Everything the file places, in the scene's own coordinates.
+void place_everything(Scene& scene, Report& report, const gltf::Placement& placement,
+                      const std::vector<DrawnMesh>& drawn, std::vector<PlacedNode>& nodes) {
+  const bool as_is = placement.is_identity();
+  const glm::dmat4 scene_from_file = placement.matrix();
+  for (const DrawnMesh& d : drawn)
+    scene.instances.push_back(
+        {d.mesh, glm::mat4(as_is ? d.file_from_mesh : scene_from_file * d.file_from_mesh), d.name});
+  if (as_is) return;
+  for (PlacedNode& placed : nodes) placed.world_from_local = scene_from_file * placed.world_from_local;
+  scene.origin_m = placement.origin;
+  scene.meters_per_unit = 1.0 / placement.scale;
+  report.note(
+      "S120",
+      "the scene lies or extends far beyond a float's precision: it was moved and scaled while loading "
+      "(`hwsim scene check` says by how much)");
+}
+
+void expose(Scene& scene, Report& report, double exposure) {
   const SceneStats totals = stats(scene);
-  check_world_bounds(report, totals);
-  scene.lights = gltf::build_lights(report, model, nodes);
+  const gltf::Box bounds{glm::dvec3(totals.bounds_min), glm::dvec3(totals.bounds_max)};
+  scene.exposure = exposure > 0.0 ? exposure : gltf::automatic_exposure(scene.lights, bounds);
+  if (scene.exposure == 1.0) return;
+  for (Light& light : scene.lights) light.color *= static_cast<float>(scene.exposure);
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", scene.exposure);
+  if (exposure > 0.0) return;
+  report.note("S122", std::string("the lights are in photometric units: an exposure of ") + text +
+                          " brings them to a picture's range (--exposure)");
+}
+
+void add_view_and_light(Scene& scene, Report& report, const gltf::Source& source,
+                        const std::vector<PlacedNode>& nodes, std::vector<std::string>* light_names) {
+  const tinygltf::Model& model = source.model;
+  const SceneStats totals = stats(scene);
+  const double units_per_m = 1.0 / scene.meters_per_unit;
+  for (gltf::NamedLight& light : gltf::build_lights(report, model, nodes, units_per_m)) {
+    scene.lights.push_back(light.light);
+    if (light_names != nullptr) light_names->push_back(std::move(light.name));
+  }
   if (scene.lights.empty()) {
     scene.lights.push_back(default_sun());
     report.note("S117", "the file has no lights: a white sun that casts shadows was added");
   }
-  scene.cameras = gltf::build_cameras(report, model, nodes);
+  scene.cameras = gltf::build_cameras(report, model, source.cameras, nodes, units_per_m);
   for (Camera& camera : scene.cameras) {
     if (camera.far_m > 0.0f) continue;
     camera.far_m = far_plane_m(camera, totals.bounds_min, totals.bounds_max);
@@ -137,26 +189,38 @@ void add_view_and_light(Scene& scene, Report& report, const tinygltf::Model& mod
 }  // namespace
 
 Scene load_gltf(const std::string& path, const SceneLoadOptions& options) {
+  return gltf::load_scene(path, options, nullptr);
+}
+
+Scene gltf::load_scene(const std::string& path, const SceneLoadOptions& options,
+                       std::vector<std::string>* light_names) {
   Report report(path);
-  gltf::Source source = gltf::read_source(report, options);
+  gltf::Budget budget(report, options.max_memory_bytes);
+  gltf::Source source = gltf::read_source(report, options, budget);
   const tinygltf::Model& model = source.model;
-  gltf::note_extensions(report, model);
-  const std::vector<PlacedNode> nodes = gltf::walk_scene(report, model);
+  gltf::note_extensions(report, source);
+  std::vector<PlacedNode> nodes = gltf::walk_scene(report, model);
   const std::vector<bool> used_meshes = meshes_in_use(model, nodes);
-  check_budget(report, model, nodes, used_meshes, options.max_drawn_triangles);
+  check_drawn_triangles(report, model, nodes, options.max_drawn_triangles);
+  gltf::charge_meshes(report, budget, model, used_meshes);
 
   Scene scene;
   scene.name = std::filesystem::path(path).stem().string();
-  gltf::MaterialSet set = gltf::build_materials(report, model, materials_in_use(model, used_meshes));
-  scene.materials = std::move(set.materials);
+  gltf::MaterialSet set = gltf::build_materials(report, source, materials_in_use(model, used_meshes));
   scene.samplers = std::move(set.samplers);
+  gltf::charge_textures(report, budget, source, set.textures);
   // Beside the meshes: loading the image library alone takes 0.2 s.
   std::future<std::vector<Texture>> textures =
       std::async(std::launch::async, [&] { return gltf::build_textures(report, source, set.textures); });
-  add_meshes(scene, report, model, nodes, used_meshes);
-  add_view_and_light(scene, report, model, nodes);
+  const std::vector<DrawnMesh> drawn = build_meshes(scene, report, model, nodes, set, used_meshes);
+  scene.materials = std::move(set.materials);
+  place_everything(scene, report, choose_placement(report, scene, drawn, model, nodes), drawn, nodes);
+  add_view_and_light(scene, report, source, nodes, light_names);
+  expose(scene, report, options.exposure);
   scene.textures = textures.get();
+  scene.memory_bytes = budget.charged_bytes();
   scene.content_hash = source.content_hash;
+  if (options.exposure > 0.0) scene.content_hash += " exposed by " + std::to_string(options.exposure);
   scene.files = source.files;
   scene.notes = report.notes();
   return scene;

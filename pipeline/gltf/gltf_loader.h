@@ -9,6 +9,12 @@ namespace hwsim::pipeline {
 struct SceneLoadOptions {
   std::size_t max_file_bytes = std::size_t{4} << 30;
   std::uint64_t max_drawn_triangles = 200'000'000;
+  /// A limit on all that loading takes: files, attributes, expanded strips, generated normals, textures with
+  /// their mip chains.
+  std::uint64_t max_memory_bytes = std::uint64_t{2} << 30;
+  /// What the lights are multiplied by; 0: 1, or so much less that lights in photometric units (a sun of
+  /// 100,000 lux) light white to about 1. Any other value becomes part of Scene::content_hash.
+  double exposure = 0.0;
 };
 
 /// Reads a .gltf or .glb file. Throws InputError (codes S0xx) naming the file, the element

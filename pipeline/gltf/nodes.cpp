@@ -10,10 +10,27 @@
 namespace hwsim::pipeline::gltf {
 namespace {
 
-glm::dmat4 local_matrix(const tinygltf::Node& node) {
+// An exporter's arithmetic leaves 0.9999999 where 1 is meant. More than that is a projection, which glTF has
+// none of.
+void make_affine(const Report& report, glm::dmat4& m, int node) {
+  constexpr double kRounding = 1e-5;
+  const glm::dvec4 row(m[0][3], m[1][3], m[2][3], m[3][3] - 1.0);
+  for (int c = 0; c < 4; ++c) {
+    const double column = std::max({1.0, std::abs(m[c][0]), std::abs(m[c][1]), std::abs(m[c][2])});
+    if (!(std::abs(row[c]) <= kRounding * (c < 3 ? column : 1.0)))
+      report.fail("S010",
+                  element("nodes", static_cast<std::size_t>(node)) +
+                      ".matrix is not affine: its last row must be 0 0 0 1",
+                  "export the node with translation, rotation and scale, or an affine matrix");
+    m[c][3] = c < 3 ? 0.0 : 1.0;
+  }
+}
+
+glm::dmat4 local_matrix(const Report& report, const tinygltf::Node& node, int index) {
   glm::dmat4 m(1.0);
   if (node.matrix.size() == 16) {
     for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
+    make_affine(report, m, index);
     return m;
   }
   if (node.rotation.size() == 4) {
@@ -33,11 +50,10 @@ void check_matrix(const Report& report, const glm::dmat4& m, int node) {
   for (int c = 0; c < 4; ++c)
     for (int r = 0; r < 4; ++r)
       if (!(std::abs(m[c][r]) <= kMax))
-        report.fail("S010", element("nodes", static_cast<std::size_t>(node)) +
-                                "'s transformation is not finite or above 1e18");
-  if (m[0][3] != 0.0 || m[1][3] != 0.0 || m[2][3] != 0.0 || m[3][3] != 1.0)
-    report.fail("S010", element("nodes", static_cast<std::size_t>(node)) +
-                            ".matrix is not affine: its last row must be 0 0 0 1");
+        report.fail("S010",
+                    element("nodes", static_cast<std::size_t>(node)) +
+                        "'s transformation is not finite or above 1e18",
+                    "scale the scene down, or repair the node");
 }
 
 // Rotation and position without scale: a camera's or light's frame looks along -z.
@@ -48,7 +64,13 @@ struct Frame {
 std::optional<Frame> frame_of(const glm::dmat4& m) {
   Frame f;
   f.origin = glm::dvec3(m[3]);
-  const glm::dvec3 z(m[2]), y(m[1]);
+  // Tiny scales are as good as others: only their ratio counts.
+  const glm::dmat3 linear(m);
+  double largest = 0.0;
+  for (int i = 0; i < 9; ++i) largest = std::max(largest, std::abs(linear[i / 3][i % 3]));
+  if (!(largest > 0.0)) return std::nullopt;
+  const double unit = largest < 1e-6 || largest > 1e6 ? 1.0 / largest : 1.0;
+  const glm::dvec3 z = linear[2] * unit, y = linear[1] * unit;
   const glm::dvec3 x = glm::cross(y, z);
   if (!(glm::dot(z, z) > 1e-30) || !(glm::dot(x, x) > 1e-60)) return std::nullopt;
   f.z = glm::normalize(z);
@@ -69,7 +91,7 @@ glm::mat4 view_of(const Frame& f) {
 }
 
 std::optional<Light> light_of(Report& report, const tinygltf::Light& source, const Frame& frame,
-                              const std::string& where) {
+                              const std::string& where, double units_per_m) {
   Light light;
   if (source.type == "directional") {
     light.kind = LightKind::directional;
@@ -81,46 +103,31 @@ std::optional<Light> light_of(Report& report, const tinygltf::Light& source, con
     report.warn("S113", "lights of an unknown type are left out", where);
     return std::nullopt;
   }
+  // What arrives falls with the square of the distance, which grows with the units.
+  const double unit = light.kind == LightKind::directional ? 1.0 : units_per_m * units_per_m;
   for (std::size_t i = 0; i < 3; ++i)
     light.color[static_cast<int>(i)] = static_cast<float>(
-        std::clamp((i < source.color.size() ? source.color[i] : 1.0) * source.intensity, 0.0, 1e9));
+        std::clamp((i < source.color.size() ? source.color[i] : 1.0) * source.intensity * unit, 0.0, 1e9));
   light.position = glm::vec3(frame.origin);
   light.direction = glm::vec3(-frame.z);
-  light.range_m = static_cast<float>(std::clamp(source.range, 0.0, 1e18));
+  light.range_m = static_cast<float>(std::clamp(source.range * units_per_m, 0.0, 1e18));
   const double outer = std::clamp(source.spot.outerConeAngle, 1e-3, std::numbers::pi / 2);
   light.outer_cone_rad = static_cast<float>(outer);
   light.inner_cone_rad = static_cast<float>(std::clamp(source.spot.innerConeAngle, 0.0, outer * 0.999));
   return light;
 }
 
-Camera camera_of(const Report& report, const tinygltf::Camera& source, const Frame& frame,
-                 const std::string& where) {
+Camera camera_of(const CameraSpec& source, const Frame& frame, double units_per_m) {
   Camera camera;
   camera.view_from_world = view_of(frame);
-  double near = 0.0, far = 0.0;
-  if (source.type == "perspective") {
-    const auto& p = source.perspective;
-    if (!(p.yfov > 1e-4 && p.yfov < std::numbers::pi * 0.999))
-      report.fail("S004", where + ".perspective.yfov is " + std::to_string(p.yfov) +
-                              " rad, must be between 0 and pi");
-    camera.fov_y_rad = static_cast<float>(p.yfov);
-    near = p.znear, far = p.zfar;
-    if (!(near > 1e-9)) report.fail("S004", where + ".perspective.znear must be above 0");
-  } else if (source.type == "orthographic") {
-    const auto& o = source.orthographic;
-    if (!(std::abs(o.ymag) > 1e-9) || !(std::abs(o.ymag) < 1e18))
-      report.fail("S004", where + ".orthographic.ymag must not be 0");
-    camera.orthographic = true;
-    camera.ortho_half_height_m = static_cast<float>(std::abs(o.ymag));
-    near = o.znear, far = o.zfar;
-  } else {
-    report.fail("S004", where + ".type is \"" + source.type + "\", must be perspective or orthographic");
-  }
-  const bool infinite = !camera.orthographic && far == 0.0;
-  if (!infinite && !(far > near && near >= 0.0 && far < 1e18))
-    report.fail("S004", where + ": zfar must be above znear, and both must be positive");
-  camera.near_m = static_cast<float>(near);
-  camera.far_m = infinite ? 0.0f : static_cast<float>(far);
+  camera.orthographic = source.orthographic;
+  if (source.orthographic)
+    camera.ortho_half_height_m = static_cast<float>(source.half_height * units_per_m);
+  else
+    camera.fov_y_rad = static_cast<float>(source.fov_y_rad);
+  camera.aspect_ratio = static_cast<float>(source.aspect_ratio);
+  camera.near_m = static_cast<float>(source.near * units_per_m);
+  camera.far_m = static_cast<float>(source.far * units_per_m);
   return camera;
 }
 
@@ -148,7 +155,7 @@ std::vector<PlacedNode> walk_scene(Report& report, const tinygltf::Model& model)
           element("nodes", index) + " is reached twice: the nodes form a cycle, or it has two parents",
           "glTF nodes must form trees; to draw a mesh twice, let two nodes refer to it");
     seen[index] = true;
-    next.world_from_local = next.world_from_local * local_matrix(model.nodes[index]);
+    next.world_from_local = next.world_from_local * local_matrix(report, model.nodes[index], next.node);
     check_matrix(report, next.world_from_local, next.node);
     push(model.nodes[index].children, next.world_from_local);
     placed.push_back(next);
@@ -156,9 +163,9 @@ std::vector<PlacedNode> walk_scene(Report& report, const tinygltf::Model& model)
   return placed;
 }
 
-std::vector<Light> build_lights(Report& report, const tinygltf::Model& model,
-                                const std::vector<PlacedNode>& nodes) {
-  std::vector<Light> out;
+std::vector<NamedLight> build_lights(Report& report, const tinygltf::Model& model,
+                                     const std::vector<PlacedNode>& nodes, double units_per_m) {
+  std::vector<NamedLight> out;
   bool shadow_given = false;
   for (const PlacedNode& placed : nodes) {
     const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(placed.node)];
@@ -174,32 +181,39 @@ std::vector<Light> build_lights(Report& report, const tinygltf::Model& model,
       frame = Frame{};
       frame->origin = glm::dvec3(placed.world_from_local[3]);
     }
-    auto light = light_of(report, model.lights[static_cast<std::size_t>(index)], *frame, where);
+    auto light = light_of(report, model.lights[static_cast<std::size_t>(index)], *frame, where, units_per_m);
     if (!light) continue;
     light->casts_shadow = light->kind == LightKind::directional && !shadow_given;
     shadow_given = shadow_given || light->casts_shadow;
-    out.push_back(*light);
+    const std::string& own = model.lights[static_cast<std::size_t>(index)].name;
+    out.push_back({*light, !node.name.empty() ? node.name : !own.empty() ? own : where});
   }
   return out;
 }
 
 std::vector<Camera> build_cameras(Report& report, const tinygltf::Model& model,
-                                  const std::vector<PlacedNode>& nodes) {
+                                  const std::vector<CameraSpec>& specs, const std::vector<PlacedNode>& nodes,
+                                  double units_per_m) {
   std::vector<Camera> out;
   for (const PlacedNode& placed : nodes) {
     const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(placed.node)];
     if (node.camera < 0) continue;
     const auto index = static_cast<std::size_t>(node.camera);
+    const CameraSpec& spec = specs[index];
+    if (!spec.fault.empty()) {
+      report.warn("S115", "a camera is left out: " + spec.fault, element("cameras", index));
+      continue;
+    }
     const std::optional<Frame> frame = frame_of(placed.world_from_local);
     if (!frame) {
       report.warn("S115", "cameras on a node with a scale of zero are left out",
                   element("nodes", static_cast<std::size_t>(placed.node)));
       continue;
     }
-    out.push_back(camera_of(report, model.cameras[index], *frame, element("cameras", index)));
-    out.back().name = !node.name.empty()                   ? node.name
-                      : !model.cameras[index].name.empty() ? model.cameras[index].name
-                                                           : element("cameras", index);
+    out.push_back(camera_of(spec, *frame, units_per_m));
+    out.back().name = !node.name.empty()   ? node.name
+                      : !spec.name.empty() ? spec.name
+                                           : element("cameras", index);
   }
   return out;
 }

@@ -1,6 +1,7 @@
 #pragma once
-// Nodes of a glTF file, and the lights and cameras that they place.
+// The nodes of a glTF scene, and the lights and cameras that they place.
 #include <glm/glm.hpp>
+#include <string>
 #include <vector>
 
 #include "pipeline/gltf/source.h"
@@ -17,11 +18,18 @@ struct PlacedNode {
 /// reached twice (a cycle, or two parents) and (S010) where a transformation leaves the range of float.
 std::vector<PlacedNode> walk_scene(Report& report, const tinygltf::Model& model);
 
-std::vector<Light> build_lights(Report& report, const tinygltf::Model& model,
-                                const std::vector<PlacedNode>& nodes);
+/// `units_per_m`: of the scene, whose coordinates the nodes are in; what the file gives in meters is scaled
+/// by it.
+struct NamedLight {
+  Light light;
+  std::string name;  ///< the node's, else the light's own, else "nodes[7]"
+};
+std::vector<NamedLight> build_lights(Report& report, const tinygltf::Model& model,
+                                     const std::vector<PlacedNode>& nodes, double units_per_m);
 
-/// far_m is 0 where the file leaves it infinite.
+/// far_m is 0 where the file leaves it infinite. Wrong cameras are left out with a warning.
 std::vector<Camera> build_cameras(Report& report, const tinygltf::Model& model,
-                                  const std::vector<PlacedNode>& nodes);
+                                  const std::vector<CameraSpec>& specs, const std::vector<PlacedNode>& nodes,
+                                  double units_per_m);
 
 }  // namespace hwsim::pipeline::gltf

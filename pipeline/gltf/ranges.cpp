@@ -21,16 +21,10 @@ class RangeChecker {
  public:
   RangeChecker(const Report& report, const json& root) : report_(report), root_(root) {}
 
-  void buffers(std::size_t bin_bytes, bool binary) {
+  void buffers() {
     each("buffers", [&](const json& buffer, std::size_t i) {
-      const std::uint64_t bytes = count_of(buffer, "byteLength");
-      if (bytes == 0) add("S007", element("buffers", i) + ".byteLength is 0, must be positive");
-      if (buffer.contains("uri")) return;
-      if (!binary || i != 0)
-        add("S007", element("buffers", i) + " has no uri; only the first buffer of a GLB may omit it");
-      else if (bytes > bin_bytes)
-        add("S007", element("buffers", i) + ".byteLength is " + std::to_string(bytes) +
-                        ", but the BIN chunk holds " + std::to_string(bin_bytes) + " bytes");
+      if (count_of(buffer, "byteLength") == 0)
+        add("S007", element("buffers", i) + ".byteLength is 0, must be positive");
     });
   }
 
@@ -175,11 +169,10 @@ int component_count(std::string_view type) {
   return 0;
 }
 
-std::vector<Diagnostic> check_ranges(const Report& report, const json& root, std::size_t bin_bytes,
-                                     bool binary) {
+std::vector<Diagnostic> check_ranges(const Report& report, const json& root) {
   RangeChecker checker(report, root);
   checker.scenes();
-  checker.buffers(bin_bytes, binary);
+  checker.buffers();
   checker.buffer_views();
   checker.accessors();
   checker.images();

@@ -16,7 +16,6 @@ int component_count(std::string_view type);
 
 /// After the types and references are known to be right: buffer views inside buffers, accessors inside their
 /// views, component types, strides, images with exactly one source.
-std::vector<Diagnostic> check_ranges(const Report& report, const nlohmann::json& root, std::size_t bin_bytes,
-                                     bool binary);
+std::vector<Diagnostic> check_ranges(const Report& report, const nlohmann::json& root);
 
 }  // namespace hwsim::pipeline::gltf

@@ -1,13 +1,27 @@
 #include "pipeline/gltf/report.h"
 
 namespace hwsim::pipeline::gltf {
+namespace {
+
+// How to go on where the place of the mistake says nothing better.
+const char* remedy_of(const std::string& code) {
+  if (code == "S001") return "check the path and that the file may be read";
+  if (code == "S006") return "export without the extension";
+  if (code == "S010") return "repair the value in the program that the scene comes from, and export again";
+  if (code == "S012") return "reduce the scene, or split it into several files";
+  if (code == "S015") return "put the file into the scene's folder and name it by a relative path";
+  if (code == "S002" || code == "S003") return "the file is damaged or incomplete: export or copy it again";
+  return "the file breaks the rules of glTF 2.0: export it again, or look at it with a glTF validator";
+}
+
+}  // namespace
 
 Diagnostic Report::error(const std::string& code, const std::string& message, const std::string& help) const {
   Diagnostic d;
   d.code = code;
   d.message = message;
   d.place.file = file_;
-  d.help = help;
+  d.help = help.empty() ? remedy_of(code) : help;
   return d;
 }
 

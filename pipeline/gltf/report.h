@@ -15,6 +15,7 @@ class Report {
  public:
   explicit Report(std::string file) : file_(std::move(file)) {}
 
+  /// Without `help`, the code's usual remedy is given.
   [[noreturn]] void fail(const std::string& code, const std::string& message,
                          const std::string& help = "") const;
   Diagnostic error(const std::string& code, const std::string& message, const std::string& help = "") const;

@@ -64,11 +64,17 @@ constexpr Rule kNode[] = {{"children", Kind::indices, kOptional, "nodes"},
 constexpr Rule kScene[] = {
     {"nodes", Kind::indices, kOptional, "nodes"}, {"name", Kind::text}, {"extensions", Kind::object_map}};
 
+constexpr Rule kTextureTransform[] = {{"offset", Kind::numbers, kOptional, "", 2},
+                                      {"rotation", Kind::number},
+                                      {"scale", Kind::numbers, kOptional, "", 2},
+                                      {"texCoord", Kind::count}};
+constexpr Rule kTextureExtensions[] = {
+    {"KHR_texture_transform", Kind::object, kOptional, "", 0, kTextureTransform}};
 constexpr Rule kTextureInfo[] = {{"index", Kind::index, kRequired, "textures"},
                                  {"texCoord", Kind::count},
                                  {"scale", Kind::number},
                                  {"strength", Kind::number},
-                                 {"extensions", Kind::object_map}};
+                                 {"extensions", Kind::object_map, kOptional, "", 0, kTextureExtensions}};
 constexpr Rule kPbr[] = {{"baseColorFactor", Kind::numbers, kOptional, "", 4},
                          {"metallicFactor", Kind::number},
                          {"roughnessFactor", Kind::number},
@@ -102,20 +108,6 @@ constexpr Rule kSampler[] = {{"magFilter", Kind::count}, {"minFilter", Kind::cou
                              {"wrapS", Kind::count},     {"wrapT", Kind::count},
                              {"name", Kind::text},       {"extensions", Kind::object_map}};
 
-constexpr Rule kPerspective[] = {{"yfov", Kind::number, kRequired},
-                                 {"znear", Kind::number, kRequired},
-                                 {"zfar", Kind::number},
-                                 {"aspectRatio", Kind::number}};
-constexpr Rule kOrthographic[] = {{"xmag", Kind::number, kRequired},
-                                  {"ymag", Kind::number, kRequired},
-                                  {"zfar", Kind::number, kRequired},
-                                  {"znear", Kind::number, kRequired}};
-constexpr Rule kCamera[] = {{"type", Kind::text, kRequired},
-                            {"name", Kind::text},
-                            {"perspective", Kind::object, kOptional, "", 0, kPerspective},
-                            {"orthographic", Kind::object, kOptional, "", 0, kOrthographic},
-                            {"extensions", Kind::object_map}};
-
 constexpr Rule kSpot[] = {{"innerConeAngle", Kind::number}, {"outerConeAngle", Kind::number}};
 constexpr Rule kLight[] = {{"type", Kind::text, kRequired},
                            {"color", Kind::numbers, kOptional, "", 3},
@@ -140,7 +132,7 @@ constexpr Rule kRoot[] = {{"asset", Kind::object, kRequired, "", 0, kAnyExtensio
                           {"textures", Kind::objects, kOptional, "", 0, kTexture},
                           {"images", Kind::objects, kOptional, "", 0, kImage},
                           {"samplers", Kind::objects, kOptional, "", 0, kSampler},
-                          {"cameras", Kind::objects, kOptional, "", 0, kCamera},
+                          {"cameras", Kind::values},
                           {"skins", Kind::objects, kOptional, "", 0, kAnyExtension},
                           {"animations", Kind::objects, kOptional, "", 0, kAnyExtension},
                           {"extensions", Kind::object_map, kOptional, "", 0, kRootExtensions}};

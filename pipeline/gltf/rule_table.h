@@ -18,7 +18,8 @@ enum class Kind {
   index_maps,
   object,
   objects,
-  object_map
+  object_map,
+  values  ///< an array of anything
 };
 
 /// What a key's value must be. `target`: the array that an index points into. `length`: of `numbers`, 0 is

@@ -17,11 +17,13 @@ using nlohmann::json;
 constexpr std::size_t kMaxErrors = 20;
 constexpr int kMaxNesting = 64;
 
+// Also writes whole numbers as integers: JSON knows one kind of number, but the parser takes 1.0 and 4.8e1
+// for no integer and would leave the key out.
 class RuleChecker {
  public:
-  RuleChecker(const Report& report, const json& root) : report_(report), root_(root) {}
+  RuleChecker(const Report& report, json& root) : report_(report), root_(root) {}
 
-  void check_object(const json& object, std::span<const Rule> rules, const std::string& where) {
+  void check_object(json& object, std::span<const Rule> rules, const std::string& where) {
     for (const Rule& rule : rules) {
       const auto found = object.find(rule.key);
       const std::string path = where.empty() ? rule.key : where + "." + rule.key;
@@ -39,7 +41,7 @@ class RuleChecker {
     if (errors_.size() < kMaxErrors) errors_.push_back(report_.error(code, message));
   }
 
-  void check_value(const json& value, const Rule& rule, const std::string& path) {
+  void check_value(json& value, const Rule& rule, const std::string& path) {
     switch (rule.kind) {
       case Kind::text:
         return expect(value.is_string(), path, "a string", value);
@@ -48,53 +50,52 @@ class RuleChecker {
       case Kind::number:
         return expect(is_finite(value), path, "a number", value);
       case Kind::count:
-        return expect(is_count(value), path, "a whole number from 0 up", value);
+        return check_count(value, path);
       case Kind::index:
         return check_index(value, rule.target, path);
       case Kind::numbers:
         return check_numbers(value, rule, path);
       case Kind::texts:
-        return check_each(value, path, [&](const json& v, const std::string& p) {
-          expect(v.is_string(), p, "a string", v);
-        });
+        return check_each(value, path,
+                          [&](json& v, const std::string& p) { expect(v.is_string(), p, "a string", v); });
       case Kind::indices:
         return check_each(value, path,
-                          [&](const json& v, const std::string& p) { check_index(v, rule.target, p); });
+                          [&](json& v, const std::string& p) { check_index(v, rule.target, p); });
       case Kind::objects:
-        return check_each(value, path,
-                          [&](const json& v, const std::string& p) { check_nested(v, rule, p); });
+        return check_each(value, path, [&](json& v, const std::string& p) { check_nested(v, rule, p); });
       case Kind::object:
         return check_nested(value, rule, path);
       case Kind::index_map:
         return check_index_map(value, rule, path);
       case Kind::index_maps:
-        return check_each(value, path,
-                          [&](const json& v, const std::string& p) { check_index_map(v, rule, p); });
+        return check_each(value, path, [&](json& v, const std::string& p) { check_index_map(v, rule, p); });
       case Kind::object_map:
         return check_object_map(value, rule, path);
+      case Kind::values:
+        return expect(value.is_array(), path, "an array", value);
     }
   }
 
   template <class Check>
-  void check_each(const json& value, const std::string& path, Check check) {
+  void check_each(json& value, const std::string& path, Check check) {
     expect(value.is_array(), path, "an array", value);
     if (!value.is_array()) return;
     for (std::size_t i = 0; i < value.size() && errors_.size() < kMaxErrors; ++i)
       check(value[i], path + "[" + std::to_string(i) + "]");
   }
 
-  void check_nested(const json& value, const Rule& rule, const std::string& path) {
+  void check_nested(json& value, const Rule& rule, const std::string& path) {
     expect(value.is_object(), path, "an object", value);
     if (value.is_object()) check_object(value, rule.children, path);
   }
 
-  void check_index_map(const json& value, const Rule& rule, const std::string& path) {
+  void check_index_map(json& value, const Rule& rule, const std::string& path) {
     expect(value.is_object(), path, "an object", value);
     if (!value.is_object()) return;
-    for (const auto& [key, item] : value.items()) check_index(item, rule.target, path + "." + key);
+    for (auto& [key, item] : value.items()) check_index(item, rule.target, path + "." + key);
   }
 
-  void check_object_map(const json& value, const Rule& rule, const std::string& path) {
+  void check_object_map(json& value, const Rule& rule, const std::string& path) {
     expect(value.is_object(), path, "an object", value);
     if (!value.is_object()) return;
     for (const auto& [key, item] : value.items())
@@ -109,8 +110,14 @@ class RuleChecker {
            value);
   }
 
-  void check_index(const json& value, const char* target, const std::string& path) {
-    if (!is_count(value)) return expect(false, path, "a whole number from 0 up", value);
+  void check_count(json& value, const std::string& path) {
+    expect(is_count(value), path, "a whole number from 0 up", value);
+    if (value.is_number_float() && is_count(value)) value = static_cast<std::uint64_t>(value.get<double>());
+  }
+
+  void check_index(json& value, const char* target, const std::string& path) {
+    check_count(value, path);
+    if (!is_count(value)) return;
     const std::size_t size = target_size(target);
     if (value.get<double>() >= static_cast<double>(size))
       add("S005", path + " is " + value.dump() + ", but the file has " + std::to_string(size) + " " + target);
@@ -141,7 +148,7 @@ class RuleChecker {
   }
 
   const Report& report_;
-  const json& root_;
+  json& root_;
   std::vector<Diagnostic> errors_;
 };
 
@@ -192,9 +199,9 @@ void check_required_extensions(const Report& report, const json& root) {
 }  // namespace
 
 bool is_honored_extension(std::string_view name) {
-  constexpr std::array<std::string_view, 4> kHonored = {"KHR_lights_punctual",
-                                                        "KHR_materials_emissive_strength",
-                                                        "KHR_materials_unlit", "KHR_mesh_quantization"};
+  constexpr std::array<std::string_view, 5> kHonored = {
+      "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_unlit",
+      "KHR_mesh_quantization", "KHR_texture_transform"};
   return std::find(kHonored.begin(), kHonored.end(), name) != kHonored.end();
 }
 
@@ -213,14 +220,13 @@ json parse_json(const Report& report, std::string_view text) {
   }
 }
 
-void check_rules(Report& report, const json& root, std::size_t bin_bytes, bool binary) {
+void check_rules(Report& report, json& root) {
   check_asset(report, root);
   check_required_extensions(report, root);
   RuleChecker checker(report, root);
   checker.check_object(root, root_rules(), "");
   if (auto errors = checker.take(); !errors.empty()) throw InputError(std::move(errors));
-  if (auto errors = check_ranges(report, root, bin_bytes, binary); !errors.empty())
-    throw InputError(std::move(errors));
+  if (auto errors = check_ranges(report, root); !errors.empty()) throw InputError(std::move(errors));
 }
 
 }  // namespace hwsim::pipeline::gltf

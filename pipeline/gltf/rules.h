@@ -15,7 +15,9 @@ bool is_honored_extension(std::string_view name);
 nlohmann::json parse_json(const Report& report, std::string_view text);
 
 /// Checks everything that tinygltf takes on trust: types, required keys, references between arrays, buffer
-/// views inside buffers, accessors inside views. Throws one InputError with all findings (S004 - S008, S014).
-void check_rules(Report& report, const nlohmann::json& root, std::size_t bin_bytes, bool binary);
+/// views inside buffers, accessors inside views. Whole numbers become integers in `root` ("1.0", "4.8e1").
+/// Cameras are judged one by one (gltf/cameras.h). Throws one InputError with all findings (S004 - S008,
+/// S014).
+void check_rules(Report& report, nlohmann::json& root);
 
 }  // namespace hwsim::pipeline::gltf

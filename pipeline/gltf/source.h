@@ -1,10 +1,13 @@
 #pragma once
-// A checked file, parsed by tinygltf.
+// A checked file: its JSON parsed by tinygltf, its buffers and images as bytes.
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "pipeline/gltf/budget.h"
+#include "pipeline/gltf/cameras.h"
 #include "pipeline/gltf/gltf_loader.h"
+#include "pipeline/gltf/images.h"
 #include "pipeline/gltf/report.h"
 
 #pragma GCC diagnostic push
@@ -15,14 +18,17 @@
 namespace hwsim::pipeline::gltf {
 
 struct Source {
-  tinygltf::Model model;
-  std::vector<std::vector<std::uint8_t>> images;  ///< encoded; empty where the file could not be read
+  tinygltf::Model
+      model;  ///< buffers filled, but for those that nothing drawn refers to; no images, no cameras
+  std::vector<CameraSpec> cameras;
+  std::vector<EncodedImage> images;
+  bool has_animations = false;
   std::string content_hash;
   std::vector<std::string> files;  ///< that were read, or looked for
 };
 
 /// Everything that is checked without looking at vertices is right in the result: types, references, byte
 /// ranges. Throws InputError.
-Source read_source(Report& report, const SceneLoadOptions& options);
+Source read_source(Report& report, const SceneLoadOptions& options, Budget& budget);
 
 }  // namespace hwsim::pipeline::gltf

@@ -1,9 +1,11 @@
 #include "pipeline/open/scene_check.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <utility>
 
-#include "pipeline/gltf/gltf_loader.h"
+#include "pipeline/gltf/load.h"
 
 namespace hwsim::pipeline {
 namespace {
@@ -35,8 +37,10 @@ std::string materials_line(const Scene& scene) {
 
 std::string textures_line(const Scene& scene, const SceneStats& s) {
   int largest = 0;
-  for (const Texture& texture : scene.textures)
-    largest = std::max({largest, texture.levels.front().width, texture.levels.front().height});
+  for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+    const MipLevel& level = levels_of(scene, i).front();
+    largest = std::max({largest, level.width, level.height});
+  }
   return counted(scene.textures.size(), "texture") + ", largest side " + std::to_string(largest) + ", " +
          std::to_string(s.texture_bytes) + " bytes with mipmaps";
 }
@@ -45,26 +49,91 @@ std::string meshes_line(const Scene& scene) {
   std::uint64_t wires = 0;
   for (const Mesh& mesh : scene.meshes) wires += !mesh.radius.empty();
   return counted(scene.meshes.size(), "mesh", "meshes") + " drawn by " +
-         counted(scene.instances.size(), "node") + ", " + std::to_string(wires) + " with wires (_RADIUS)";
+         counted(scene.instances.size(), "node") + ", " + std::to_string(wires) +
+         " with wires (_HWSIM_RADIUS)";
 }
 
-std::string lights_line(const Scene& scene) {
-  std::uint64_t kinds[3] = {};
-  for (const Light& light : scene.lights) ++kinds[static_cast<std::size_t>(light.kind)];
-  return counted(scene.lights.size(), "light") + " (" + std::to_string(kinds[0]) + " directional, " +
-         std::to_string(kinds[1]) + " point, " + std::to_string(kinds[2]) + " spot), " +
-         counted(scene.cameras.size(), "camera");
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+std::string triple(const glm::dvec3& v, const char* between) {
+  return number(v.x) + between + number(v.y) + between + number(v.z);
+}
+
+// In the file's own meters, wherever the scene was moved to.
+std::string size_line(const Scene& scene, const SceneStats& s) {
+  const glm::dvec3 low(s.bounds_min), high(s.bounds_max);
+  std::string line = "size " + triple((high - low) * scene.meters_per_unit, " x ") +
+                     " m (glTF's unit), center at (" +
+                     triple((low + high) * 0.5 * scene.meters_per_unit + scene.origin_m, ", ") + ") m";
+  if (scene.origin_m != glm::dvec3(0.0))
+    line += "; moved by (" + triple(-scene.origin_m, ", ") + ") m while loading";
+  if (scene.meters_per_unit != 1.0)
+    line += "; a unit is " + number(scene.meters_per_unit) + " m while it is drawn";
+  return line;
+}
+
+// The first few by name: a file may have thousands.
+template <class Items, class Describe>
+std::string listed(const Items& items, Describe describe) {
+  constexpr std::size_t kShown = 8;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(items.size(), kShown); ++i)
+    out += (i == 0 ? ": " : ", ") + describe(items[i]);
+  if (items.size() > kShown) out += " and " + std::to_string(items.size() - kShown) + " more";
+  return out;
+}
+
+std::string cameras_line(const Scene& scene) {
+  return counted(scene.cameras.size(), "camera") + listed(scene.cameras, [&](const Camera& camera) {
+           return "`" + camera.name + "` (" +
+                  (camera.orthographic
+                       ? "orthographic, " +
+                             number(2.0 * static_cast<double>(camera.ortho_half_height_m) *
+                                    scene.meters_per_unit) +
+                             " m high"
+                       : number(static_cast<double>(camera.fov_y_rad) * 180.0 / 3.141592653589793) +
+                             " degrees high") +
+                  ")";
+         });
+}
+
+std::string lights_line(const Scene& scene, const std::vector<std::string>& names) {
+  constexpr const char* kKinds[] = {"directional", "point", "spot"};
+  std::string line = counted(scene.lights.size(), "light") + listed(scene.lights, [&](const Light& light) {
+                       const auto place = static_cast<std::size_t>(&light - scene.lights.data());
+                       const double strength = std::max({light.color.x, light.color.y, light.color.z});
+                       return "`" + (place < names.size() ? names[place] : "default sun") + "` (" +
+                              kKinds[static_cast<std::size_t>(light.kind)] + ", " + number(strength) +
+                              (light.casts_shadow ? ", casts shadows)" : ")");
+                     });
+  if (scene.exposure != 1.0) line += "; exposed by " + number(scene.exposure);
+  return line;
+}
+
+std::string cost_line(const Scene& scene, const SceneStats& s) {
+  // Measured on two cores of 2 GHz: a load, and a frame of 1280 x 720 by `none`, grow with triangles and
+  // texels.
+  const double seconds =
+      1.0 + 2.5e-6 * static_cast<double>(s.drawn_triangles) + 3e-8 * static_cast<double>(s.texture_bytes);
+  return "loading takes at most about " + std::to_string((scene.memory_bytes >> 20) + 1) +
+         " MiB; loading and a first frame of 1280 x 720 take about " + number(std::ceil(seconds)) + " s";
 }
 
 }  // namespace
 
 std::vector<Diagnostic> check_gltf(const std::string& path) {
   try {
-    const Scene scene = load_gltf(path);
+    std::vector<std::string> light_names;
+    const Scene scene = gltf::load_scene(path, {}, &light_names);
     const SceneStats totals = stats(scene);
     std::vector<Diagnostic> out;
-    for (const std::string& line : {triangles_line(totals), meshes_line(scene), materials_line(scene),
-                                    textures_line(scene, totals), lights_line(scene)}) {
+    for (const std::string& line : {triangles_line(totals), size_line(scene, totals), meshes_line(scene),
+                                    materials_line(scene), textures_line(scene, totals), cameras_line(scene),
+                                    lights_line(scene, light_names), cost_line(scene, totals)}) {
       Diagnostic d;
       d.severity = Severity::note;
       d.code = "S300";

@@ -8,9 +8,9 @@
 namespace hwsim::pipeline {
 
 /// Loads the file and lists, in this order: the errors that keep it from loading (then nothing else), what it
-/// uses (counts of triangles, vertices, textures, materials by alpha mode, lights, cameras, extensions;
-/// severity note, code S300), what is not supported, and what was generated or repaired (the loader's own
-/// notes). Never throws InputError.
+/// uses (triangles, size and place, meshes, materials by alpha mode, textures, cameras and lights by name,
+/// memory and seconds; severity note, code S300), what is not supported, and what was generated or repaired
+/// (the loader's own notes). Never throws InputError.
 std::vector<Diagnostic> check_gltf(const std::string& path);
 
 }  // namespace hwsim::pipeline

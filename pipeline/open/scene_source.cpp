@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "hwsim/base/content_hash.h"
+#include "hwsim/base/file_name.h"
 #include "pipeline/base/file_io.h"
 #include "pipeline/generate/registry.h"
 #include "pipeline/gltf/gltf_loader.h"
@@ -19,7 +20,7 @@ namespace {
 using Values = std::map<std::string, double>;
 
 // Raised when a generator's output changes, so that no older cached file is taken for it.
-constexpr int kGeneratorVersion = 2;
+constexpr int kGeneratorVersion = 3;
 
 [[noreturn]] void fail(const std::string& code, const std::string& message, const std::string& hint = "",
                        const std::string& help = "") {
@@ -118,11 +119,11 @@ void write_complete(const generate::Generator& generator, const Values& values, 
 }
 
 bool is_file_name(const std::string& name) {
-  const std::string extension = std::filesystem::path(name).extension().string();
-  return extension == ".gltf" || extension == ".glb";
+  return has_extension(name, ".gltf") || has_extension(name, ".glb");
 }
 
-Scene open_generated(const std::string& spec, const std::string& cache_directory) {
+Scene open_generated(const std::string& spec, const std::string& cache_directory,
+                     const SceneLoadOptions& options) {
   const auto [name, given] = parse_spec(spec);
   const generate::Generator& generator = find_generator(name);
   const Values values = complete_parameters(generator.info, given);
@@ -134,12 +135,12 @@ Scene open_generated(const std::string& spec, const std::string& cache_directory
   const std::string path = (std::filesystem::path(cache_directory) / cache_file_name(name, values)).string();
   if (std::filesystem::exists(path, error)) {
     try {
-      return load_gltf(path);
+      return load_gltf(path, options);
     } catch (const InputError&) {  // a damaged cache file is no mistake of the user's: written anew
     }
   }
   write_complete(generator, values, path);
-  return load_gltf(path);
+  return load_gltf(path, options);
 }
 
 }  // namespace
@@ -159,9 +160,10 @@ void write_generated_scene(const std::string& name, const std::map<std::string, 
   write_complete(generator, complete_parameters(generator.info, parameters), path);
 }
 
-Scene open_scene(const std::string& name_or_path, const std::string& cache_directory) {
-  if (is_file_name(name_or_path)) return load_gltf(name_or_path);
-  Scene scene = open_generated(name_or_path, cache_directory);
+Scene open_scene(const std::string& name_or_path, const std::string& cache_directory,
+                 const SceneLoadOptions& options) {
+  if (is_file_name(name_or_path)) return load_gltf(name_or_path, options);
+  Scene scene = open_generated(name_or_path, cache_directory, options);
   scene.name = name_or_path;
   return scene;
 }

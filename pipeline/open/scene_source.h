@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pipeline/generate/generator_info.h"
+#include "pipeline/gltf/gltf_loader.h"
 #include "pipeline/scene/scene.h"
 
 namespace hwsim::pipeline {
@@ -19,7 +20,8 @@ void write_generated_scene(const std::string& name, const std::map<std::string, 
 /// Loads a file (a name that ends in .gltf or .glb), or generates a scene, writes it below `cache_directory`
 /// (created if missing, files replaced atomically) and loads it by the same loader. Throws InputError with
 /// the nearest names.
-Scene open_scene(const std::string& name_or_path, const std::string& cache_directory);
+Scene open_scene(const std::string& name_or_path, const std::string& cache_directory,
+                 const SceneLoadOptions& options = {});
 
 /// $HWSIM_CACHE, else $XDG_CACHE_HOME/hwsim, else ~/.cache/hwsim, else a folder of the system's temporary
 /// directory.

@@ -28,7 +28,8 @@ void add_instance(SceneStats& out, const Scene& scene, const Mesh& mesh) {
 glm::mat4 clip_from_view(const Camera& camera, float aspect_ratio) {
   const float near = camera.near_m, far = camera.far_m;
   const float half_height =
-      camera.orthographic ? camera.ortho_half_height_m : std::tan(camera.fov_y_rad * 0.5f);
+      (camera.orthographic ? camera.ortho_half_height_m : std::tan(camera.fov_y_rad * 0.5f)) *
+      static_cast<float>(frame_widening(camera, aspect_ratio));
   glm::mat4 m(0.0f);
   m[0][0] = 1.0f / (half_height * aspect_ratio);
   m[1][1] = 1.0f / half_height;
@@ -50,8 +51,8 @@ SceneStats stats(const Scene& scene) {
     out.stored_triangles += mesh.indices.size() / 3;
     out.vertices += mesh.positions.size();
   }
-  for (const Texture& texture : scene.textures)
-    for (const MipLevel& level : texture.levels)
+  for (std::size_t i = 0; i < scene.textures.size(); ++i)
+    for (const MipLevel& level : levels_of(scene, i))
       out.texture_bytes += level.texels.size() * sizeof(std::uint32_t);
   bool first = true;
   for (const Instance& instance : scene.instances) {
@@ -67,6 +68,24 @@ SceneStats stats(const Scene& scene) {
     }
   }
   return out;
+}
+
+double frame_widening(const Camera& camera, double aspect_ratio) {
+  // A thousandth is rounding: exporters write 1.7777.
+  const double excess = static_cast<double>(camera.aspect_ratio) / aspect_ratio;
+  return excess > 1.001 ? excess : 1.0;
+}
+
+double half_height(const Camera& camera, double aspect_ratio) {
+  const double own = camera.orthographic ? static_cast<double>(camera.ortho_half_height_m)
+                                         : std::tan(static_cast<double>(camera.fov_y_rad) / 2);
+  return own * frame_widening(camera, aspect_ratio);
+}
+
+const std::vector<MipLevel>& levels_of(const Scene& scene, std::size_t texture) {
+  const Texture& own = scene.textures[texture];
+  return own.same_texels_as < 0 ? own.levels
+                                : scene.textures[static_cast<std::size_t>(own.same_texels_as)].levels;
 }
 
 Camera framing_camera(const glm::vec3& bounds_min, const glm::vec3& bounds_max) {

@@ -1,5 +1,6 @@
 #pragma once
-// What is drawn: plain data, immutable once loaded. World space is right-handed, y up, in meters (glTF).
+// What is drawn: plain data, immutable once loaded. World space is right-handed, y up, in meters (glTF),
+// unless the scene was moved or scaled while it was loaded (Scene::origin_m).
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -38,6 +39,7 @@ struct Texture {
   std::string name;
   bool srgb = true;  ///< texels of r, g, b are sRGB encoded; alpha is always linear
   std::vector<MipLevel> levels;
+  int same_texels_as = -1;  ///< an earlier texture of an equal image, which holds the levels; -1: none
 };
 
 struct TextureRef {
@@ -131,7 +133,16 @@ struct Camera {
   float far_m = 1000.0f;
   bool orthographic = false;
   float ortho_half_height_m = 1.0f;
+  float aspect_ratio = 0.0f;  ///< width by height of the frame to be seen whole; 0: the image's
 };
+
+/// How much more than the camera's height an image of this shape shows, so that the camera's frame is seen
+/// whole: 1 or above.
+double frame_widening(const Camera& camera, double aspect_ratio);
+
+/// Half the height of what an image of this shape shows, at unit distance (perspective) or in meters
+/// (orthographic).
+double half_height(const Camera& camera, double aspect_ratio);
 
 /// Depth 0 at near and 1 at far.
 glm::mat4 clip_from_view(const Camera& camera, float aspect_ratio);
@@ -147,9 +158,15 @@ struct Scene {
   std::vector<Camera> cameras;    ///< at least one: a default one that frames the scene
   glm::vec3 ambient{0.05f};
   glm::vec3 background{0.2f, 0.3f, 0.45f};  ///< linear
-  std::vector<Diagnostic> notes;            ///< what the loader ignored, generated or clamped
-  std::string content_hash;                 ///< hex, of everything that was read
-  std::vector<std::string> files;           ///< that were read, or looked for and missing; absolute paths
+  /// For a scene too far away, too small or too large for floats: where its zero lies in the file,
+  /// and how many of the file's meters a unit is. Lengths "in meters" are in these units everywhere else.
+  glm::dvec3 origin_m{0.0};
+  double meters_per_unit = 1.0;
+  double exposure = 1.0;           ///< by which the file's lights were multiplied (gltf/exposure.h)
+  std::uint64_t memory_bytes = 0;  ///< that loading took at most, as estimated beforehand
+  std::vector<Diagnostic> notes;   ///< what the loader ignored, generated or clamped
+  std::string content_hash;        ///< hex, of everything that was read
+  std::vector<std::string> files;  ///< that were read, or looked for and missing; absolute paths
 };
 
 struct SceneStats {
@@ -158,5 +175,8 @@ struct SceneStats {
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  ///< world space
 };
 SceneStats stats(const Scene& scene);
+
+/// The mip chain of a texture: its own, or that of the one whose texels it shares.
+const std::vector<MipLevel>& levels_of(const Scene& scene, std::size_t texture);
 
 }  // namespace hwsim::pipeline

@@ -30,16 +30,25 @@ TextureStore::TextureStore(const Scene& scene)
     : texels_(scene.textures.size()),
       by_texture_(scene.textures.size()),
       sampler_count_(static_cast<int>(scene.samplers.size())) {
+  std::vector<std::uint32_t> line_counts;
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
     const Texture& texture = scene.textures[i];
     TextureView& view = by_texture_[i];
+    if (texture.same_texels_as >= 0) {  // texels of its own in the GPU's memory, but one copy of them here
+      view = by_texture_[static_cast<std::size_t>(texture.same_texels_as)];
+      view.first_line = line_count_;
+      line_count_ += line_counts[static_cast<std::size_t>(texture.same_texels_as)];
+      line_counts.push_back(line_counts[static_cast<std::size_t>(texture.same_texels_as)]);
+      continue;
+    }
     view.srgb = texture.srgb;
     view.levels = static_cast<int>(std::min<std::size_t>(texture.levels.size(), kMaxMipLevels));
     for (std::size_t level = 0; level < static_cast<std::size_t>(view.levels); ++level)
       append_level(texture.levels[level], level, view, texels_[i]);
     view.texels = texels_[i].data();
     view.first_line = line_count_;
-    line_count_ += static_cast<std::uint32_t>(texels_[i].size() / kTexelsPerLine);
+    line_counts.push_back(static_cast<std::uint32_t>(texels_[i].size() / kTexelsPerLine));
+    line_count_ += line_counts.back();
   }
   for (const TextureView& base : by_texture_) {
     for (const Sampler& sampler : scene.samplers) {

@@ -177,7 +177,7 @@ TEST_F(SceneLoader, NodesMultiplyFromTheRootAndMayMirror) {
   const Scene scene = load(glb);
   const glm::vec4 p =
       scene.instances.at(0).world_from_local * glm::vec4(1, 0, 0, 1);  // (-2+1, 0) turned by 90 degrees
-  EXPECT_NEAR(p.x, 10.0f, 1e-6f);
+  EXPECT_NEAR(p.x + scene.origin_m.x, 10.0, 1e-6);  // far for a square of a meter: moved while it was loaded
   EXPECT_NEAR(p.y, -1.0f, 1e-6f);
   EXPECT_LT(glm::determinant(glm::mat3(scene.instances[0].world_from_local)), 0.0f);
 }
@@ -190,14 +190,15 @@ TEST_F(SceneLoader, LongNodeChainsLoadAndCyclesAreErrors) {
   for (int i = 0; i + 1 < kLength; ++i)
     nodes.push_back({{"children", {i + 1}}, {"translation", {0.5, 0, 0}}});
   nodes.push_back({{"mesh", 0}});
-  EXPECT_EQ(load(glb).instances.at(0).world_from_local[3].x, 0.5f * (kLength - 1));
+  const Scene chain = load(glb);
+  EXPECT_EQ(chain.instances.at(0).world_from_local[3].x + chain.origin_m.x, 0.5 * (kLength - 1));
   nodes.back()["children"] = {7};
   EXPECT_EQ(error_code(glb), "S011");
 }
 
 TEST_F(SceneLoader, WireRadiusComesWithItsAxis) {
   auto glb = test::square_glb();
-  glb.add_attribute("_RADIUS", {0.1f, 0.2f, 0.3f, 0.4f}, "SCALAR", 1);
+  glb.add_attribute("_HWSIM_RADIUS", {0.1f, 0.2f, 0.3f, 0.4f}, "SCALAR", 1);
   EXPECT_TRUE(load(glb).meshes[0].radius.empty());  // no TANGENT: no axis
   glb.add_attribute("TANGENT", {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, "VEC4", 4);
   const Scene scene = load(glb);
