@@ -168,7 +168,7 @@ DrawBatch surface_batch(const FrameParts& parts, const ForwardTarget& target,
   batch.state = opaque_state(target);
   batch.vertex_uniforms = std::make_shared<MeshVertexUniforms>(
       MeshVertexUniforms{jittered(parts.clip_from_world, target.jitter_px, target.width, target.height)});
-  batch.fragment = &forward_program(parts.full_varyings, alpha_test);
+  batch.fragment = &forward_program(parts.full_varyings, alpha_test, parts.lighting.extended);
   batch.fragment_uniforms =
       std::make_shared<ForwardUniforms>(ForwardUniforms{parts.lighting, parts.full_varyings});
   return batch;

@@ -39,9 +39,10 @@ DrawBatch gbuffer_batch(const FrameParts& parts, const GBuffer& g, const std::ve
                         bool alpha_test) {
   DrawBatch batch = mesh_batch(parts, draws, surface_vertex_program(parts));
   batch.state.raster.centroid = g.centroid;
-  batch.fragment = &gbuffer_program(g.layout->encoding, parts.full_varyings, alpha_test);
-  batch.fragment_uniforms =
-      std::make_shared<GBufferUniforms>(GBufferUniforms{parts.camera.view_from_world, parts.full_varyings});
+  batch.fragment =
+      &gbuffer_program(g.layout->encoding, parts.full_varyings, alpha_test, parts.lighting.extended);
+  batch.fragment_uniforms = std::make_shared<GBufferUniforms>(
+      GBufferUniforms{parts.camera.view_from_world, parts.full_varyings, parts.lighting.extended});
   return batch;
 }
 
@@ -95,7 +96,7 @@ Pass& add_light_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& 
   Pass& pass = graph.add_pass(name, PassKind::full_screen);
   pass.samples = g.samples;
   pass.color = {g.lit};
-  pass.fragment = &deferred_light_program(g.layout->encoding);
+  pass.fragment = &deferred_light_program(g.layout->encoding, parts.lighting.extended);
   pass.uniforms = std::move(uniforms);
   bind_gbuffer(pass, parts, g);
   return pass;
@@ -132,7 +133,8 @@ void add_tile_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
   const ImageId samples =
       graph.add_image({"lit_samples", g.layout->lit, graph.width(), graph.height(), g.samples});
   Pass& pass =
-      add_frame_compute(graph, "light_tiles", tile_light_program(g.layout->encoding), std::move(uniforms));
+      add_frame_compute(graph, "light_tiles", tile_light_program(g.layout->encoding, parts.lighting.extended),
+                        std::move(uniforms));
   pass.targets = {samples};
   bind_gbuffer(pass, parts, g);
   Pass& copy = graph.add_pass("copy_lit", PassKind::full_screen);

@@ -138,11 +138,13 @@ DrawBatch record_batch(const FrameGraph& graph, const FrameParts& parts, const S
   batch.state.raster.centroid = o.centroid;
   batch.state.depth = {true, false, Compare::equal};
   batch.state.force_early_z = true;
-  batch.fragment = &sbaa_gbuffer_program(o.full_record(), parts.full_varyings, alpha_test);
+  batch.fragment =
+      &sbaa_gbuffer_program(o.full_record(), parts.full_varyings, alpha_test, parts.lighting.extended);
   auto u = std::make_shared<SbaaGBufferUniforms>();
   u->surfaces = describe_surfaces(graph, o);
   u->id_mask = o.id_mask();
   u->full_varyings = parts.full_varyings;
+  u->extended = parts.lighting.extended;
   u->clip_from_world = parts.clip_from_world;
   u->view_from_world = parts.camera.view_from_world;
   batch.fragment_uniforms = std::move(u);
@@ -177,7 +179,7 @@ void add_shade_pass(FrameGraph& graph, const FrameParts& parts, const Setup& o, 
   frame.height = graph.height();
   Pass& pass = graph.add_pass("shade", PassKind::full_screen);
   pass.color = {output};
-  pass.fragment = &sbaa_shade_program(o.full_record());
+  pass.fragment = &sbaa_shade_program(o.full_record(), parts.lighting.extended);
   pass.uniforms = std::move(u);
   pass.sampled = {images.surfaces};
   if (parts.shadow_map) pass.sampled.push_back(parts.shadow_map);

@@ -22,9 +22,12 @@ class Wires {
   std::vector<std::uint32_t> parent_;
 };
 
-float pixel_scale(const Camera& camera, int height_px) {
-  const float half = camera.orthographic ? camera.ortho_half_height_m : std::tan(0.5f * camera.fov_y_rad);
-  return half / static_cast<float>(height_px);  // Eq. 6.1
+float pixel_scale(const Camera& camera, const ForwardTarget& target) {
+  const float own = camera.orthographic ? camera.ortho_half_height_m : std::tan(0.5f * camera.fov_y_rad);
+  const auto height_px = static_cast<float>(target.height);
+  const float half =
+      own * static_cast<float>(frame_widening(camera, static_cast<float>(target.width) / height_px));
+  return half / height_px;  // Eq. 6.1
 }
 
 WireLook look_of(const WireOptions& o) {
@@ -81,7 +84,7 @@ DrawCall WireDraws::prepare(const Scene& scene, const Camera& camera, DrawCall c
 DrawBatch WireDraws::depth_batch(const FrameParts& parts, const ForwardTarget& target) const {
   WireVertexUniforms uniforms;
   uniforms.clip_from_world = jittered(parts.clip_from_world, target.jitter_px, target.width, target.height);
-  uniforms.pixel_scale = pixel_scale(parts.camera, target.height);
+  uniforms.pixel_scale = pixel_scale(parts.camera, target);
   uniforms.width_px = look_.width_px;
   DrawBatch batch = mesh_batch(parts, parts.draws.separate, wire_vertex_program());
   batch.state = opaque_state(target);
@@ -97,7 +100,7 @@ DrawBatch WireDraws::batch(const FrameParts& parts, const ForwardTarget& target,
   batch.fragment = &wire_program(part);
   WireUniforms uniforms;
   uniforms.lighting = parts.lighting;
-  uniforms.pixel_scale = pixel_scale(parts.camera, target.height);
+  uniforms.pixel_scale = pixel_scale(parts.camera, target);
   uniforms.look = look_;
   batch.fragment_uniforms = std::make_shared<WireUniforms>(uniforms);
   return batch;

@@ -28,6 +28,7 @@ struct MaterialView {
         alpha_cutoff = 0.5f;
   bool alpha_test = false;
   bool double_sided = false;
+  bool unlit = false;       ///< seen in its base color, whatever the light
   bool has_colors = false;  ///< a mesh that uses it has vertex colors
   int index = 0;
   const TextureView* base_color_texture = nullptr;  ///< null: none

@@ -170,11 +170,19 @@ void for_each_light(S& s, const LightingUniforms& u, std::span<const PointLight>
   });
 }
 
+/// What a surface reflects of the ambient light.
+template <class F>
+Vec3<F> ambient_light(const LightingUniforms& u, const Surface<F>& surface) {
+  const Vec3<F> ambient = broadcast<F>(u.ambient);
+  if (u.extended) return (surface.albedo + surface.specular) * ambient;
+  return surface.albedo * ambient;
+}
+
 /// Ambient, emissive, directional lights and the given point lights.
 template <class S, class F, class M>
 Vec3<F> light_surface(S& s, const LightingUniforms& u, std::span<const PointLight> points,
                       const Surface<F>& surface, M mask) {
-  Vec3<F> sum = surface.emissive + surface.albedo * broadcast<F>(u.ambient);
+  Vec3<F> sum = surface.emissive + ambient_light(u, surface);
   for_each_light(s, u, points, surface, mask, [&](const Vec3<F>& l, const Vec3<F>& light) HWY_ATTR {
     sum = sum + reflect_light(surface, l, u.model) * light;
   });

@@ -24,10 +24,20 @@ PointLight make_point(const Light& light) {
 
 }  // namespace
 
+bool needs_extended_shading(const Scene& scene) {
+  const auto is_extended = [&](const Mesh::Part& part) {
+    return scene.materials[static_cast<std::size_t>(part.material)].model == ShadingModel::unlit;
+  };
+  return std::any_of(scene.meshes.begin(), scene.meshes.end(), [&](const Mesh& mesh) {
+    return std::any_of(mesh.parts.begin(), mesh.parts.end(), is_extended);
+  });
+}
+
 LightingUniforms make_lighting(const Scene& scene, const Camera& camera) {
   LightingUniforms u;
   u.eye = glm::vec3(glm::inverse(camera.view_from_world)[3]);
   u.ambient = scene.ambient;
+  u.extended = needs_extended_shading(scene);
   u.directional.clear();
   u.points.clear();
   for (const Light& light : scene.lights) {

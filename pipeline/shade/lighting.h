@@ -30,6 +30,9 @@ struct LightingUniforms {
   glm::vec3 eye{0.0f};
   glm::vec3 ambient{0.0f};
   ShadingModel model = ShadingModel::blinn_phong;
+  /// Shaders know unlit surfaces, whose mark G-buffers hold, and reflect ambient light by their specular
+  /// color too. Where a scene needs neither they are spared the operations.
+  bool extended = false;
   int directional_count = 0, point_count = 0;
   std::vector<DirectionalLight> directional = std::vector<DirectionalLight>(1);
   std::vector<PointLight> points = std::vector<PointLight>(1);
@@ -38,6 +41,9 @@ struct LightingUniforms {
   float shadow_offset_m = 0.0f;  ///< receivers are moved along their normal by this before the comparison
   float shadow_bias = 0.0f;      ///< and by this in depth
 };
+
+/// Whether some mesh has an unlit material.
+bool needs_extended_shading(const Scene& scene);
 
 LightingUniforms make_lighting(const Scene& scene, const Camera& camera);
 

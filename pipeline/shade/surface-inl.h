@@ -67,6 +67,14 @@ Vec3<typename S::F> shading_normal(S& s, bool full_varyings) {
   return n * s.facing();
 }
 
+/// An unlit surface is black and shines in its base color: no light changes that, ambient light neither.
+template <class F>
+void show_unlit(MaterialSample<F>& m) {
+  m.emissive = {m.base.x, m.base.y, m.base.z};
+  m.base = {F(0.0f), F(0.0f), F(0.0f), m.base.w};
+  m.metallic = F(1.0f);
+}
+
 template <class S>
 MaterialSample<typename S::F> sample_material(S& s, bool full_varyings) {
   using F = typename S::F;
@@ -95,6 +103,7 @@ MaterialSample<typename S::F> sample_material(S& s, bool full_varyings) {
                 out.base.z * s.attr(V::kColor + 2), out.base.w * s.attr(V::kColor + 3)};
   });
   out.normal = shading_normal(s, full_varyings);
+  if (m.unlit) show_unlit(out);
   return out;
 }
 
@@ -109,6 +118,13 @@ Surface<F> make_surface(const MaterialSample<F>& m, const Vec3<F>& position, con
   return surface;
 }
 
+/// The lanes of `mask` that lights are worth summing for: none of an unlit material.
+template <class S>
+typename S::M lights_reach(const S& s, typename S::M mask) {
+  using F = typename S::F;
+  return s.material().unlit ? mask & (F(1.0f) < F(0.0f)) : mask;
+}
+
 /// Takes away the ambient light that an occlusion texture keeps off (glTF 2.0, 3.9.3: direct light stays).
 template <class S>
 Vec3<typename S::F> occlude_ambient(S& s, const LightingUniforms& u, const Surface<typename S::F>& surface,
@@ -118,7 +134,7 @@ Vec3<typename S::F> occlude_ambient(S& s, const LightingUniforms& u, const Surfa
   s.uniform_branch(kOcclusionTextureBlock, m.occlusion_texture != nullptr, [&]() HWY_ATTR {
     const F open = s.sample_texture(m.occlusion_texture, uv_of(m.occlusion_texture)).x;
     const F lost = (F(1.0f) - open) * F(m.occlusion_strength);
-    color = color - surface.albedo * broadcast<F>(u.ambient) * lost;
+    color = color - ambient_light(u, surface) * lost;
   });
   return color;
 }

@@ -301,7 +301,7 @@ class AggregateLight {
 
   Vec3<F> light() {
     const pipeline::LightingUniforms& lights = u_.lighting;
-    Vec3<F> sum = surface_.emissive + surface_.albedo * constant<F>(lights.ambient);
+    Vec3<F> sum = surface_.emissive + lanes::ambient_light(lights, surface_);
     s_.loop(lanes::kDirectionalBlock, lights.directional_count, mask_, [&](int i) HWY_ATTR {
       const auto& light = lights.directional[static_cast<std::size_t>(i)];
       F visible(1.0f);

@@ -28,8 +28,8 @@ struct ForwardShader {
     s.count(BaseCounters::lit_samples, lit & s.active());
     const auto position = s.attr3(pipeline::SurfaceVaryings::kPosition);
     const auto surface = lanes::make_surface(material, position, u.lighting.eye);
-    const auto color =
-        lanes::occlude_ambient(s, u.lighting, surface, lanes::light_surface(s, u.lighting, surface, lit));
+    const auto color = lanes::occlude_ambient(
+        s, u.lighting, surface, lanes::light_surface(s, u.lighting, surface, lanes::lights_reach(s, lit)));
     s.output(0, {color.x, color.y, color.z, material.base.w});
   }
 };
@@ -63,10 +63,13 @@ HWY_EXPORT(run_alpha_test);
 
 namespace {
 template <bool kAlphaTest>
-pipeline::FragmentProgram describe_forward(bool full, void (*run)(pipeline::FragmentBatch&, const void*)) {
+pipeline::FragmentProgram describe_forward(bool full, bool extended,
+                                           void (*run)(pipeline::FragmentBatch&, const void*)) {
+  ForwardUniforms uniforms;
+  uniforms.lighting.extended = extended;
   pipeline::FragmentProgram program =
       pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::ForwardShader<kAlphaTest>>(
-          kAlphaTest ? "forward_alpha_test" : "forward", run);
+          kAlphaTest ? "forward_alpha_test" : "forward", run, uniforms);
   program.varying_scalars = full ? pipeline::SurfaceVaryings::kFull : pipeline::SurfaceVaryings::kBasic;
   program.can_discard = kAlphaTest;
   return program;
@@ -80,11 +83,17 @@ void call_alpha_test(pipeline::FragmentBatch& b, const void* u) {
 }
 }  // namespace
 
-const pipeline::FragmentProgram& forward_program(bool full_varyings, bool alpha_test) {
+const pipeline::FragmentProgram& forward_program(bool full_varyings, bool alpha_test, bool extended) {
   static const pipeline::FragmentProgram programs[] = {
-      describe_forward<false>(false, call_forward), describe_forward<false>(true, call_forward),
-      describe_forward<true>(false, call_forward_mask), describe_forward<true>(true, call_forward_mask)};
-  return programs[(alpha_test ? 2 : 0) + (full_varyings ? 1 : 0)];
+      describe_forward<false>(false, false, call_forward),
+      describe_forward<false>(true, false, call_forward),
+      describe_forward<true>(false, false, call_forward_mask),
+      describe_forward<true>(true, false, call_forward_mask),
+      describe_forward<false>(false, true, call_forward),
+      describe_forward<false>(true, true, call_forward),
+      describe_forward<true>(false, true, call_forward_mask),
+      describe_forward<true>(true, true, call_forward_mask)};
+  return programs[(extended ? 4 : 0) + (alpha_test ? 2 : 0) + (full_varyings ? 1 : 0)];
 }
 
 const pipeline::FragmentProgram& alpha_test_program() {

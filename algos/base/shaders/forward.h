@@ -13,7 +13,7 @@ struct ForwardUniforms {
 
 /// Material and all lights in one pass; color 0 is linear RGBA. `alpha_test`: discards below the material's
 /// cutoff.
-const pipeline::FragmentProgram& forward_program(bool full_varyings, bool alpha_test);
+const pipeline::FragmentProgram& forward_program(bool full_varyings, bool alpha_test, bool extended = false);
 
 struct AlphaTestUniforms {};
 /// Discards below the material's cutoff; no color. For depth-only passes over mesh_uv_program.

@@ -46,6 +46,9 @@ F luminance(const lanes::Vec3<F>& c) {
 /// Below this roughness the shading models do not change (lanes::set_material), so a stored one is never 0:
 /// that marks background and slots that nothing was written to.
 inline constexpr float kLeastRoughness = 0.0625f;
+/// Marks an unlit surface, whose base color stands where a lit one's does: below every lit surface's
+/// roughness, 0 in eight bits, but positive.
+inline constexpr float kUnlitRoughness = 0x1p-10f, kUnlitBelow = 0.03f;
 
 /// Attributes of a fragment on their way into a G-buffer.
 template <class F>
@@ -54,7 +57,34 @@ struct GBufferValues {
   F metallic, roughness;
   lanes::Vec2<F> gradient;  ///< change of view-space depth for a pixel
   F alpha = F(1.0f);        ///< coverage, where alpha is no test
+  float least_roughness = kLeastRoughness;
 };
+
+/// Puts an unlit material's color where base color is kept, with its mark. Only in extended shaders.
+template <class S, class F>
+void mark_unlit(const S& s, bool extended, GBufferValues<F>& v) {
+  if (!extended) return;
+  if (!s.material().unlit) {
+    v.roughness = max(v.roughness, F(kLeastRoughness));
+    return;
+  }
+  v.base = v.emissive;
+  v.emissive = {F(0.0f), F(0.0f), F(0.0f)};
+  v.metallic = F(0.0f);
+  v.roughness = F(kUnlitRoughness);
+  v.least_roughness = kUnlitRoughness;
+}
+
+/// The opposite of mark_unlit, on what was read back.
+template <class F>
+void show_marked(const pipeline::LightingUniforms& u, F roughness, lanes::Surface<F>& surface) {
+  if (!u.extended) return;
+  const auto unlit = roughness < F(kUnlitBelow);
+  const lanes::Vec3<F> black = {F(0.0f), F(0.0f), F(0.0f)};
+  surface.emissive = select(unlit, surface.albedo, surface.emissive);
+  surface.albedo = select(unlit, black, surface.albedo);
+  surface.specular = select(unlit, black, surface.specular);
+}
 
 template <GBufferEncoding kEncoding, class S, class F>
 void write_gbuffer(S& s, const GBufferValues<F>& v) {
@@ -64,7 +94,7 @@ void write_gbuffer(S& s, const GBufferValues<F>& v) {
     s.output(1, {v.base.x, v.base.y, v.base.z, v.metallic});
     s.output(2, {v.gradient.x, v.gradient.y, F(0.0f), F(0.0f)});
   } else if constexpr (kEncoding == GBufferEncoding::record) {
-    s.output(0, {v.position.x, v.position.y, v.position.z, max(v.roughness, F(kLeastRoughness))});
+    s.output(0, {v.position.x, v.position.y, v.position.z, max(v.roughness, F(v.least_roughness))});
     s.output(1, {n.x, n.y, F(0.0f), F(0.0f)});
     s.output(2, {v.base.x, v.base.y, v.base.z, v.metallic});
     s.output(3, {v.emissive.x, v.emissive.y, v.emissive.z, F(1.0f)});
@@ -112,6 +142,7 @@ GBufferSample<typename S::F, typename S::M> read_gbuffer(S& s, const DeferredUni
     surface.normal = decode_normal(second.x, second.y);
     lanes::set_material(lanes::Vec3<F>{base.x, base.y, base.z}, base.w, first.w, surface);
     surface.emissive = {emissive.x, emissive.y, emissive.z};
+    show_marked(u.lighting, first.w, surface);
   } else {
     const F z = s.load_image(depth_slot(kEncoding), x, y, sample).x;
     out.covered = z < F(1.0f);
@@ -128,6 +159,7 @@ GBufferSample<typename S::F, typename S::M> read_gbuffer(S& s, const DeferredUni
       emissive = specular.w;
     }
     surface.emissive = {emissive, emissive, emissive};
+    show_marked(u.lighting, kEncoding == GBufferEncoding::gradients ? first.z : second.w, surface);
   }
   surface.to_eye = normalize(lanes::broadcast<F>(u.lighting.eye) - surface.position);
   return out;

@@ -30,6 +30,7 @@ struct GBufferShader {
       const F z = F(v[0][2]) * p.x + F(v[1][2]) * p.y + F(v[2][2]) * p.z + F(v[3][2]);
       values.gradient = depth_gradient(z);
     }
+    mark_unlit(s, u.extended, values);
     write_gbuffer<kEncoding>(s, values);
   }
 };
@@ -120,11 +121,13 @@ void call_light(FragmentBatch& b, const void* u) {
 void call_copy_samples(FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_copy_samples)(b, u); }
 
 template <GBufferEncoding kEncoding, bool kAlphaTest>
-FragmentProgram describe_gbuffer(bool full) {
+FragmentProgram describe_gbuffer(bool full, bool extended) {
+  GBufferUniforms uniforms;
+  uniforms.extended = extended;
   constexpr int kWhich = 2 * static_cast<int>(kEncoding) + (kAlphaTest ? 1 : 0);
   FragmentProgram program =
       pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::GBufferShader<kEncoding, kAlphaTest>>(
-          kAlphaTest ? "gbuffer_alpha_test" : "gbuffer", call_gbuffer<kWhich>);
+          kAlphaTest ? "gbuffer_alpha_test" : "gbuffer", call_gbuffer<kWhich>, uniforms);
   program.varying_scalars = full ? pipeline::SurfaceVaryings::kFull : pipeline::SurfaceVaryings::kBasic;
   program.can_discard = kAlphaTest;
   return program;
@@ -140,19 +143,23 @@ FragmentProgram describe_classify() {
 }
 
 template <GBufferEncoding kEncoding>
-FragmentProgram describe_light() {
+FragmentProgram describe_light(bool extended) {
+  DeferredUniforms uniforms;
+  uniforms.lighting.extended = extended;
   return pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::DeferredLightShader<kEncoding>>(
-      "deferred_light", call_light<static_cast<int>(kEncoding)>);
+      "deferred_light", call_light<static_cast<int>(kEncoding)>, uniforms);
 }
 
-/// The programs of one encoding.
+/// The programs of one encoding; those for extended shading behind the others.
 template <GBufferEncoding kEncoding>
 struct EncodingPrograms {
-  FragmentProgram gbuffer[4] = {
-      describe_gbuffer<kEncoding, false>(false), describe_gbuffer<kEncoding, false>(true),
-      describe_gbuffer<kEncoding, true>(false), describe_gbuffer<kEncoding, true>(true)};
+  FragmentProgram gbuffer[8] = {
+      describe_gbuffer<kEncoding, false>(false, false), describe_gbuffer<kEncoding, false>(true, false),
+      describe_gbuffer<kEncoding, true>(false, false),  describe_gbuffer<kEncoding, true>(true, false),
+      describe_gbuffer<kEncoding, false>(false, true),  describe_gbuffer<kEncoding, false>(true, true),
+      describe_gbuffer<kEncoding, true>(false, true),   describe_gbuffer<kEncoding, true>(true, true)};
   FragmentProgram classify = describe_classify<kEncoding>();
-  FragmentProgram light = describe_light<kEncoding>();
+  FragmentProgram light[2] = {describe_light<kEncoding>(false), describe_light<kEncoding>(true)};
 };
 
 template <class Result>
@@ -172,9 +179,10 @@ const FragmentProgram& choose(GBufferEncoding encoding, Result&& result) {
 }
 }  // namespace
 
-const FragmentProgram& gbuffer_program(GBufferEncoding encoding, bool full_varyings, bool alpha_test) {
+const FragmentProgram& gbuffer_program(GBufferEncoding encoding, bool full_varyings, bool alpha_test,
+                                       bool extended) {
   return choose(encoding, [&](const auto& programs) -> const FragmentProgram& {
-    return programs.gbuffer[(alpha_test ? 2 : 0) + (full_varyings ? 1 : 0)];
+    return programs.gbuffer[(extended ? 4 : 0) + (alpha_test ? 2 : 0) + (full_varyings ? 1 : 0)];
   });
 }
 
@@ -182,8 +190,10 @@ const FragmentProgram& classify_program(GBufferEncoding encoding) {
   return choose(encoding, [](const auto& programs) -> const FragmentProgram& { return programs.classify; });
 }
 
-const FragmentProgram& deferred_light_program(GBufferEncoding encoding) {
-  return choose(encoding, [](const auto& programs) -> const FragmentProgram& { return programs.light; });
+const FragmentProgram& deferred_light_program(GBufferEncoding encoding, bool extended) {
+  return choose(encoding, [&](const auto& programs) -> const FragmentProgram& {
+    return programs.light[extended ? 1 : 0];
+  });
 }
 
 const FragmentProgram& copy_samples_program() {

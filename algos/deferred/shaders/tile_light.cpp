@@ -51,9 +51,10 @@ struct CountBounds {
 
 /// One pass through every block, for the operation counts.
 template <GBufferEncoding kEncoding>
-pipeline::ComputeProgram describe_tile_light(void (*run)(pipeline::GroupBatch&, const void*)) {
+pipeline::ComputeProgram describe_tile_light(bool extended, void (*run)(pipeline::GroupBatch&, const void*)) {
   lanes::CountFragment s;
-  const DeferredUniforms u;
+  DeferredUniforms u;
+  u.lighting.extended = extended;
   const std::span points(u.lighting.points.data(), 1);
   CountBounds bounds;
   gather_bounds<kEncoding>(s, u, bounds);
@@ -301,25 +302,29 @@ namespace hwsim::algos {
 HWY_EXPORT(run_tile_light);
 
 template <GBufferEncoding kEncoding>
-const pipeline::ComputeProgram& program_of() {
-  static const pipeline::ComputeProgram program =
-      HWY_NAMESPACE::describe_tile_light<kEncoding>([](pipeline::GroupBatch& g, const void* u) {
-        HWY_DYNAMIC_DISPATCH(run_tile_light)
-        (kEncoding, g, u);
-      });
-  return program;
+pipeline::ComputeProgram describe(bool extended) {
+  return HWY_NAMESPACE::describe_tile_light<kEncoding>(extended, [](pipeline::GroupBatch& g, const void* u) {
+    HWY_DYNAMIC_DISPATCH(run_tile_light)
+    (kEncoding, g, u);
+  });
 }
 
-const pipeline::ComputeProgram& tile_light_program(GBufferEncoding encoding) {
+template <GBufferEncoding kEncoding>
+const pipeline::ComputeProgram& program_of(bool extended) {
+  static const pipeline::ComputeProgram programs[] = {describe<kEncoding>(false), describe<kEncoding>(true)};
+  return programs[extended ? 1 : 0];
+}
+
+const pipeline::ComputeProgram& tile_light_program(GBufferEncoding encoding, bool extended) {
   switch (encoding) {
     case GBufferEncoding::gradients:
-      return program_of<GBufferEncoding::gradients>();
+      return program_of<GBufferEncoding::gradients>(extended);
     case GBufferEncoding::record:
-      return program_of<GBufferEncoding::record>();
+      return program_of<GBufferEncoding::record>(extended);
     case GBufferEncoding::compact:
-      return program_of<GBufferEncoding::compact>();
+      return program_of<GBufferEncoding::compact>(extended);
   }
-  return program_of<GBufferEncoding::gradients>();
+  return program_of<GBufferEncoding::gradients>(extended);
 }
 
 }  // namespace hwsim::algos

@@ -91,8 +91,9 @@ struct SbaaGBufferShader {
   static void store(S& s, const SbaaGBufferUniforms& u, const lanes::MaterialSample<F>& m, F view_z, I slot,
                     M accepted) {
     const auto p = s.attr3(pipeline::SurfaceVaryings::kPosition);
-    const GBufferValues<F> values{p,          m.normal,    {m.base.x, m.base.y, m.base.z}, m.emissive,
-                                  m.metallic, m.roughness, depth_gradient(view_z)};
+    GBufferValues<F> values{p,          m.normal,    {m.base.x, m.base.y, m.base.z}, m.emissive,
+                            m.metallic, m.roughness, depth_gradient(view_z)};
+    mark_unlit(s, u.extended, values);
     const glm::mat4& c = u.clip_from_world;
     const auto row = [&](int r) HWY_ATTR {
       return F(c[0][r]) * p.x + F(c[1][r]) * p.y + F(c[2][r]) * p.z + F(c[3][r]);
@@ -217,8 +218,10 @@ void call(FragmentBatch& b, const void* u) {
 }
 
 template <class Shader, int kWhich>
-FragmentProgram describe(const char* name, int varyings, bool can_discard) {
-  FragmentProgram program = pipeline::HWY_NAMESPACE::describe_fragment_shader<Shader>(name, call<kWhich>);
+FragmentProgram describe(const char* name, int varyings, bool can_discard,
+                         const typename Shader::Uniforms& uniforms = {}) {
+  FragmentProgram program =
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<Shader>(name, call<kWhich>, uniforms);
   program.varying_scalars = varyings;
   program.can_discard = can_discard;
   return program;
@@ -235,11 +238,21 @@ FragmentProgram describe_id() {
 
 // Alpha-tested fragments that fail write no record; they need no discard, as nothing else is written.
 template <bool kFull, bool kAlphaTest>
-FragmentProgram describe_gbuffer(bool full_varyings) {
+FragmentProgram describe_gbuffer(bool full_varyings, bool extended) {
+  SbaaGBufferUniforms uniforms;
+  uniforms.extended = extended;
   using V = pipeline::SurfaceVaryings;
   constexpr int kWhich = kGBufferRuns + (kFull ? 2 : 0) + (kAlphaTest ? 1 : 0);
   return describe<HWY_NAMESPACE::SbaaGBufferShader<kFull, kAlphaTest>, kWhich>(
-      "sbaa_gbuffer", full_varyings ? V::kFull : V::kBasic, false);
+      "sbaa_gbuffer", full_varyings ? V::kFull : V::kBasic, false, uniforms);
+}
+
+template <bool kFull>
+FragmentProgram describe_shade(bool extended) {
+  SbaaShadeUniforms uniforms;
+  uniforms.frame.lighting.extended = extended;
+  return describe<HWY_NAMESPACE::SbaaShadeShader<kFull>, kShadeRuns + (kFull ? 1 : 0)>("sbaa_shade", 0, false,
+                                                                                       uniforms);
 }
 }  // namespace
 
@@ -251,20 +264,24 @@ const FragmentProgram& sbaa_id_program(SbaaSample sample, bool alpha_test) {
   return programs[2 * static_cast<int>(sample) + (alpha_test ? 1 : 0)];
 }
 
-const FragmentProgram& sbaa_gbuffer_program(bool full_record, bool full_varyings, bool alpha_test) {
-  static const FragmentProgram programs[] = {
-      describe_gbuffer<false, false>(false), describe_gbuffer<false, false>(true),
-      describe_gbuffer<false, true>(false),  describe_gbuffer<false, true>(true),
-      describe_gbuffer<true, false>(false),  describe_gbuffer<true, false>(true),
-      describe_gbuffer<true, true>(false),   describe_gbuffer<true, true>(true)};
-  return programs[(full_record ? 4 : 0) + (alpha_test ? 2 : 0) + (full_varyings ? 1 : 0)];
+const FragmentProgram& sbaa_gbuffer_program(bool full_record, bool full_varyings, bool alpha_test,
+                                            bool extended) {
+  static const std::vector<FragmentProgram> programs = [] {
+    std::vector<FragmentProgram> all;
+    for (const bool ext : {false, true})
+      for (const auto describe_one : {describe_gbuffer<false, false>, describe_gbuffer<false, true>,
+                                      describe_gbuffer<true, false>, describe_gbuffer<true, true>})
+        for (const bool full : {false, true}) all.push_back(describe_one(full, ext));
+    return all;
+  }();
+  return programs[(extended ? 8u : 0u) + (full_record ? 4u : 0u) + (alpha_test ? 2u : 0u) +
+                  (full_varyings ? 1u : 0u)];
 }
 
-const FragmentProgram& sbaa_shade_program(bool full_record) {
-  static const FragmentProgram programs[] = {
-      describe<HWY_NAMESPACE::SbaaShadeShader<false>, kShadeRuns>("sbaa_shade", 0, false),
-      describe<HWY_NAMESPACE::SbaaShadeShader<true>, kShadeRuns + 1>("sbaa_shade", 0, false)};
-  return programs[full_record ? 1 : 0];
+const FragmentProgram& sbaa_shade_program(bool full_record, bool extended) {
+  static const FragmentProgram programs[] = {describe_shade<false>(false), describe_shade<true>(false),
+                                             describe_shade<false>(true), describe_shade<true>(true)};
+  return programs[(extended ? 2 : 0) + (full_record ? 1 : 0)];
 }
 
 }  // namespace hwsim::algos

@@ -53,11 +53,14 @@ struct SbaaGBufferUniforms {
   SbaaSurfaces surfaces;
   int id_mask = 127;
   bool full_varyings = false;
+  bool extended = false;  ///< LightingUniforms::extended
   glm::mat4 clip_from_world{1.0f}, view_from_world{1.0f};
 };
 /// Image slot 0: the surfaces. Writes the records of fragments that were chosen to buffer 0: the attachments
 /// of GBufferEncoding::record; below 32 bytes depth instead of position; below 16 no emission.
-const pipeline::FragmentProgram& sbaa_gbuffer_program(bool full_record, bool full_varyings, bool alpha_test);
+/// Here and below, `extended` is the lighting's.
+const pipeline::FragmentProgram& sbaa_gbuffer_program(bool full_record, bool full_varyings, bool alpha_test,
+                                                      bool extended = false);
 
 struct SbaaShadeUniforms {
   DeferredUniforms frame;
@@ -65,6 +68,6 @@ struct SbaaShadeUniforms {
   bool weigh_background = true;
 };
 /// Image slot 0: the surfaces. Buffer 0: the records. Color: the mean of the surfaces by their samples.
-const pipeline::FragmentProgram& sbaa_shade_program(bool full_record);
+const pipeline::FragmentProgram& sbaa_shade_program(bool full_record, bool extended = false);
 
 }  // namespace hwsim::algos

@@ -37,7 +37,7 @@ void encode_record(const GBufferValues<F>& v, F z, I (&words)[8]) {
   const I base = pack<F, I>(Format::rgba8_srgb, v.base.x, v.base.y, v.base.z, v.metallic);
   const I emissive = pack<F, I>(Format::r11g11b10_float, v.emissive.x, v.emissive.y, v.emissive.z, zero);
   if constexpr (kFull) {
-    words[0] = float_to_bits(max(v.roughness, F(kLeastRoughness)));
+    words[0] = float_to_bits(max(v.roughness, F(v.least_roughness)));
     words[1] = float_to_bits(v.position.x);
     words[2] = float_to_bits(v.position.y);
     words[3] = float_to_bits(v.position.z);
@@ -77,6 +77,7 @@ lanes::Surface<F> decode_record(const DeferredUniforms& u, I x, I y, const I (&w
   const auto emissive = unpack<F, I>(Format::r11g11b10_float, words[kFull ? 6 : 3]);
   lanes::set_material(lanes::Vec3<F>{base.x, base.y, base.z}, base.w, roughness, surface);
   surface.emissive = {emissive.x, emissive.y, emissive.z};
+  show_marked(u.lighting, roughness, surface);
   surface.to_eye = normalize(lanes::broadcast<F>(u.lighting.eye) - surface.position);
   return surface;
 }

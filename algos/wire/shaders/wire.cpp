@@ -60,7 +60,7 @@ struct WireVertexShader {
 /// The light of both models in one pass over the lights: `full`, and (n.l / 2 + 1/2)^power of the albedo.
 template <class S, class F, class M>
 Vec3<F> half_lambert(S& s, const WireUniforms& u, const lanes::Surface<F>& surface, F share, M mask) {
-  Vec3<F> sum = surface.emissive + surface.albedo * lanes::broadcast<F>(u.lighting.ambient);
+  Vec3<F> sum = surface.emissive + lanes::ambient_light(u.lighting, surface);
   const std::span points(u.lighting.points.data(), s.loop_count(u.lighting.point_count));
   lanes::for_each_light(s, u.lighting, points, surface, mask,
                         [&](const Vec3<F>& l, const Vec3<F>& light) HWY_ATTR {
