@@ -103,6 +103,10 @@ void add_view_flags(CLI::App& app, ViewOptions& view) {
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
   app.add_flag("--no-shadows", view.no_shadows, "No shadow map");
+  app.add_option("--exposure", view.exposure,
+                 "Factor of the file's lights; default 1, or less where they are in photometric units")
+      ->check(CLI::Range(1e-12, 1e12))
+      ->type_name("FACTOR");
   add_sets(app, view.sets);
 }
 
@@ -124,8 +128,15 @@ void add_points(CLI::App& app, RunOptions& run) {
          "Techniques, separated by commas (repeatable); default none")
       ->allow_extra_args(false)
       ->type_name("NAME[:key=value]");
-  add_repeatable(app, "-g,--gpu", run.gpus, "A GPU of `hwsim list gpus`, or a .toml file (repeatable)",
-                 "NAME|FILE")
+  app.add_option_function<std::vector<std::string>>(
+         "-g,--gpu",
+         [&run](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts)
+             for (const std::string& gpu : lab::split(text, ',')) run.gpus.push_back(gpu);
+         },
+         "GPUs of `hwsim list gpus`, or .toml files, separated by commas (repeatable)")
+      ->allow_extra_args(false)
+      ->type_name("NAME|FILE")
       ->envname("HWSIM_GPU");
   add_overlays(app, run.overlays);
   app.add_option("--engine", run.engine, "Timing engine; default queue")

@@ -36,6 +36,7 @@ struct ViewOptions {
   std::optional<Resolution> resolution;
   std::optional<std::string> camera;  ///< a name or an index
   std::optional<int> point_lights;
+  std::optional<double> exposure;
   bool no_shadows = false;
   std::vector<std::string> sets;  ///< "path=value"
 };

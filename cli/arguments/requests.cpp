@@ -22,6 +22,7 @@ void apply_flags(const ViewOptions& options, View& view) {
   view.camera = options.camera.value_or(view.camera);
   view.point_lights = options.point_lights.value_or(view.point_lights);
   view.shadows = view.shadows && !options.no_shadows;
+  view.exposure = options.exposure.value_or(view.exposure);
 }
 
 void apply_flags(const RunOptions& options, Request& request) {

@@ -8,6 +8,7 @@
 #include "cli/commands/commands.h"
 #include "cli/terminal/answer.h"
 #include "cli/terminal/progress.h"
+#include "hwsim/base/file_name.h"
 #include "lab/base/messages.h"
 #include "lab/base/text.h"
 #include "lab/results/results.h"
@@ -25,7 +26,7 @@ struct Variant {
 
 bool is_result(const std::string& input) {
   std::error_code error;
-  return std::filesystem::is_directory(input, error) || input.ends_with(".json");
+  return std::filesystem::is_directory(input, error) || has_extension(input, ".json");
 }
 
 std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, " ")); }

@@ -5,6 +5,7 @@
 #include "algos/techniques.h"
 #include "cli/commands/commands.h"
 #include "cli/terminal/answer.h"
+#include "hwsim/base/file_name.h"
 #include "lab/base/files.h"
 #include "lab/base/messages.h"
 #include "lab/catalog/catalog.h"
@@ -86,7 +87,8 @@ std::optional<Answer> find_entry(const std::string& name) {
 ExitStatus show_entry(const ShowOptions& options, Context&) {
   const std::string directory = gpu_directory();
   const std::vector<std::string> gpus = list_gpus(directory);
-  if (options.name.ends_with(".toml") || std::find(gpus.begin(), gpus.end(), options.name) != gpus.end()) {
+  if (has_extension(options.name, ".toml") ||
+      std::find(gpus.begin(), gpus.end(), options.name) != gpus.end()) {
     const GpuConfig gpu = load_gpu_from_options(options.name, options.overlays, options.sets);
     print({.table = key_table(gpu, options.origin), .heading = fmt::format("{}: {}\n\n", gpu.id, gpu.title)},
           options.common);

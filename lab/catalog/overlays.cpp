@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "hwsim/base/file_name.h"
 #include "hwsim/config/toml_file.h"
 #include "lab/base/files.h"
 #include "lab/base/messages.h"
@@ -26,7 +27,7 @@ std::vector<std::string> overlay_names() {
 }
 
 std::string overlay_file(const std::string& name_or_path) {
-  if (name_or_path.ends_with(".toml")) return name_or_path;
+  if (has_extension(name_or_path, ".toml")) return name_or_path;
   const fs::path path = overlay_directory() / (name_or_path + ".toml");
   std::error_code error;
   if (fs::is_regular_file(path, error)) return path.string();

@@ -4,6 +4,7 @@
 #include <array>
 #include <span>
 
+#include "hwsim/base/file_name.h"
 #include "lab/base/files.h"
 #include "pipeline/image/srgb_codes.h"
 
@@ -12,14 +13,14 @@ namespace {
 
 using pipeline::RawImage;
 
-bool is_linear(const std::string& path) { return path.ends_with(".exr") || path.ends_with(".EXR"); }
+bool is_linear(const std::string& path) { return has_extension(path, ".exr"); }
 
 }  // namespace
 
 bool is_image_file(const std::string& path) {
-  constexpr std::array<std::string_view, 8> kEndings = {".png",  ".PNG",  ".jpg", ".JPG",
-                                                        ".jpeg", ".JPEG", ".exr", ".EXR"};
-  return std::any_of(kEndings.begin(), kEndings.end(), [&](std::string_view e) { return path.ends_with(e); });
+  constexpr std::array<std::string_view, 4> kEndings = {".png", ".jpg", ".jpeg", ".exr"};
+  return std::any_of(kEndings.begin(), kEndings.end(),
+                     [&](std::string_view e) { return has_extension(path, e); });
 }
 
 ImageInput read_image_input(const std::string& path) {

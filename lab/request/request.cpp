@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "hwsim/base/file_name.h"
 #include "hwsim/config/assign.h"
 #include "hwsim/config/settings.h"
 #include "lab/request/image_input.h"
@@ -45,7 +46,7 @@ std::vector<Key> settable(const std::vector<Field>& fields, std::string_view gro
 }
 
 bool is_scene_file(const std::string& scene) {
-  return scene.ends_with(".gltf") || scene.ends_with(".glb") || is_image_file(scene);
+  return has_extension(scene, ".gltf") || has_extension(scene, ".glb") || is_image_file(scene);
 }
 
 std::string key_of(const Assignment& set) { return set.path.substr(set.path.find('.') + 1); }
@@ -73,7 +74,7 @@ std::string key_text(const View& view, FieldUse use) { return key_text_of(view, 
 std::string key_text(const Settings& settings, FieldUse use) { return key_text_of(settings, use); }
 
 Request open_request(const std::string& scene_or_run_file) {
-  if (scene_or_run_file.ends_with(".toml")) return read_run_file(scene_or_run_file);
+  if (has_extension(scene_or_run_file, ".toml")) return read_run_file(scene_or_run_file);
   Request request;
   request.view.scene = scene_or_run_file;
   return request;

@@ -35,6 +35,8 @@ struct View {
   std::string lights = "scene";
   bool shadows = true;
   int shadow_map_px = 2048;
+  double exposure = 0.0;  ///< of the file's lights; 0: automatic (pipeline::SceneLoadOptions)
+  int memory_mib = 2048;  ///< that loading the scene may take
   bool operator==(const View&) const = default;
 };
 
@@ -84,7 +86,8 @@ struct Field {
 
 template <class Visitor>
 void describe(Visitor& v, View& view) {
-  auto& [scene, resolution, camera, point_lights, light_range, lights, shadows, shadow_map_px] = view;
+  auto& [scene, resolution, camera, point_lights, light_range, lights, shadows, shadow_map_px, exposure,
+         memory_mib] = view;
   auto& [width_px, height_px] = resolution;
   // The scene's content and the camera's index stand in the keys of caches, not what the user called them.
   v.field(
@@ -123,6 +126,14 @@ void describe(Visitor& v, View& view) {
            "shadow_map_px",
            kWork},
           shadow_map_px);
+  // Part of the scene's content, as the loader sees it.
+  v.field({{"exposure", 0, 1e12, kNoFlags,
+            "factor of the file's lights; 0: 1, or less where they are in photometric units"},
+           "scene",
+           "exposure"},
+          exposure);
+  v.field({{"memory_mib", 1, 1 << 20, kNoFlags, "memory that loading the scene may take"}, "scene"},
+          memory_mib);
 }
 
 template <class Visitor>

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "hwsim/base/file_name.h"
 #include "hwsim/config/assign.h"
 #include "hwsim/config/toml_file.h"
 #include "lab/base/messages.h"
@@ -97,7 +98,7 @@ void check_header(const Header& header, const TomlFile& file, std::vector<Diagno
 std::string resolve(const std::string& name, const std::string& file,
                     std::initializer_list<const char*> endings) {
   for (const char* ending : endings)
-    if (name.ends_with(ending)) return (fs::path(file).parent_path() / name).lexically_normal().string();
+    if (has_extension(name, ending)) return (fs::path(file).parent_path() / name).lexically_normal().string();
   return name;
 }
 
@@ -117,7 +118,8 @@ Request read_run_file(const std::string& path) {
   }
   if (!problems.empty()) throw InputError(problems);
   std::string& scene = request.view.scene;
-  scene = is_image_file(scene) ? resolve(scene, path, {""}) : resolve(scene, path, {".gltf", ".glb"});
+  scene = is_image_file(scene) ? (fs::path(path).parent_path() / scene).lexically_normal().string()
+                               : resolve(scene, path, {".gltf", ".glb"});
   request.techniques = {header.technique};
   request.gpus = {resolve(header.gpu, path, {".toml"})};
   return request;
@@ -128,7 +130,7 @@ std::string run_file_text(const RunPlan& plan, const algos::TechniqueChoice& tec
   Header header{.kind = "run", .technique = algos::technique_text(technique, true), .gpu = gpu_file};
   Request request{.view = plan.view, .settings = settings_of(plan)};
   std::string& scene = request.view.scene;
-  if (scene.ends_with(".gltf") || scene.ends_with(".glb") || is_image_file(scene))
+  if (has_extension(scene, ".gltf") || has_extension(scene, ".glb") || is_image_file(scene))
     scene = fs::absolute(scene).lexically_normal().string();
   std::string text;
   for (const Field& field : recorded_fields(header, request))

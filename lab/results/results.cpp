@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "pipeline/image/frame_check.h"
+#include "pipeline/scene/scene.h"
+
 namespace hwsim::lab {
 namespace {
 
@@ -84,6 +87,11 @@ std::string band_of(double sol_ratio) {  // the bands of the performance-triage 
   return sol_ratio >= 0.8 ? "close to its peak" : sol_ratio >= 0.6 ? "well used" : "under-used";
 }
 
+/// Filters of a finished picture draw none.
+bool draws_a_scene(const WorkTrace& trace) {
+  return std::ranges::any_of(trace.passes, [](const PassWork& pass) { return pass.kind == PassKind::draw; });
+}
+
 }  // namespace
 
 std::uint64_t shader_invocations(const WorkTrace& trace) {
@@ -121,7 +129,11 @@ Json result_json(const PointResult& point, const RunPlan& plan, const std::strin
 }
 
 std::vector<Diagnostic> result_warnings(const PointResult& point) {
-  return algos::frame_notes(*point.technique, point.emulation->trace);
+  std::vector<Diagnostic> warnings = algos::frame_notes(*point.technique, point.emulation->trace);
+  if (!draws_a_scene(point.emulation->trace)) return warnings;
+  const auto look = pipeline::check_frame(point.emulation->color, pipeline::Scene{}.background);
+  warnings.insert(warnings.end(), look.begin(), look.end());
+  return warnings;
 }
 
 std::string headline_time(const FrameTiming& timing) {

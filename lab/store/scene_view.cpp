@@ -10,6 +10,7 @@
 
 #include "algos/source_digest.h"
 #include "hwsim/base/byte_codec.h"
+#include "hwsim/base/file_name.h"
 #include "lab/base/messages.h"
 #include "lab/request/image_input.h"
 #include "lab/store/cache.h"
@@ -113,12 +114,21 @@ std::optional<SceneSummary> decode(std::span<const std::uint8_t> bytes) {
 }
 
 /// A generated scene's file follows from its name and the generator's sources; a file is itself.
-std::string summary_path(const std::string& scene) {
-  const bool is_file = scene.ends_with(".gltf") || scene.ends_with(".glb");
+std::string summary_path(const View& view) {
+  const std::string& scene = view.scene;
+  const bool is_file = has_extension(scene, ".gltf") || has_extension(scene, ".glb");
   std::error_code error;
   const std::string name = is_file ? fs::absolute(scene, error).lexically_normal().string() : scene;
-  return cache_path(CacheFolder::scenes, fmt::format("{}|{}|{}", algos::source_digest(), name, scene),
+  return cache_path(CacheFolder::scenes,
+                    fmt::format("{}|{}|{}|{}", algos::source_digest(), name, scene, view.exposure),
                     ".summary");
+}
+
+pipeline::SceneLoadOptions load_options(const View& view) {
+  pipeline::SceneLoadOptions options;
+  options.max_memory_bytes = static_cast<std::uint64_t>(view.memory_mib) << 20;
+  options.exposure = view.exposure;
+  return options;
 }
 
 int find_camera(const SceneSummary& scene, const std::string& text) {
@@ -151,7 +161,7 @@ SceneView::SceneView(View plan, Observer& observer) : plan_(std::move(plan)) {
     load_image();
     return;
   }
-  const std::string path = summary_path(plan_.scene);
+  const std::string path = summary_path(plan_);
   if (auto known = remembered_summary(path, observer)) {
     summary_ = std::move(*known);
   } else {
@@ -171,7 +181,7 @@ SceneView::SceneView(View plan, Observer& observer) : plan_(std::move(plan)) {
 
 void SceneView::load() {
   auto scene = std::make_shared<const pipeline::Scene>(
-      pipeline::open_scene(plan_.scene, cache_directory(CacheFolder::scenes)));
+      pipeline::open_scene(plan_.scene, cache_directory(CacheFolder::scenes), load_options(plan_)));
   summary_ = {scene->name, scene->content_hash, {}, scene->notes};
   for (const pipeline::Camera& camera : scene->cameras) summary_.cameras.push_back(camera.name);
   scene_ = std::move(scene);
