@@ -1,5 +1,6 @@
 // Rules over several keys of a GPU. Each names every key involved and the values found.
 #include <algorithm>
+#include <cctype>
 #include <vector>
 
 #include "hwsim/base/diagnostics.h"
@@ -68,6 +69,26 @@ void check_rules(const GpuConfig& c, std::vector<Diagnostic>& problems) {
   check.require(c.export_128bit_ratio <= c.export_64bit_ratio,
                 "`export_128bit_ratio` must not exceed `export_64bit_ratio`",
                 {"export_128bit_ratio", "export_64bit_ratio"});
+}
+
+void check_ids(std::span<const GpuConfig> gpus, std::vector<Diagnostic>& problems) {
+  const auto folder = [](std::string id) {
+    for (char& c : id)
+      if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '.') c = '_';
+    return id;
+  };
+  for (std::size_t i = 0; i < gpus.size(); ++i)
+    for (std::size_t before = 0; before < i; ++before) {
+      if (folder(gpus[i].id) != folder(gpus[before].id)) continue;
+      if (gpus[i].id == gpus[before].id && content_hash(gpus[i]) == content_hash(gpus[before])) continue;
+      Diagnostic d;
+      d.code = "C023";
+      d.message =
+          "two GPUs name one folder of results: \"" + gpus[before].id + "\" and \"" + gpus[i].id + "\"";
+      d.help = "give one of their files another `id`, or run them apart";
+      problems.push_back(std::move(d));
+      break;
+    }
 }
 
 void validate(const GpuConfig& config) {

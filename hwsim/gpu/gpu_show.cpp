@@ -253,6 +253,8 @@ std::span<const ConfigCode> config_codes() {
       {"C021", "not a value", "`--set` takes one boolean, number or text."},
       {"C022", "bad table of a value",
        "{ value, provenance, source, interval = [low, high] } is what a value may carry."},
+      {"C023", "two GPUs of one name",
+       "Their ids name the same folder, so that the results of one would overwrite those of the other."},
   };
   return kCodes;
 }

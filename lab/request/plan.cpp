@@ -6,6 +6,7 @@
 #include <array>
 #include <set>
 
+#include "hwsim/gpu/gpu_rules.h"
 #include "lab/base/messages.h"
 #include "lab/base/text.h"
 #include "lab/catalog/overlays.h"
@@ -100,6 +101,7 @@ std::vector<GpuConfig> plan_gpus(const std::vector<std::string>& names,
     } catch (const InputError& error) {
       append(problems, error);
     }
+  check_ids(gpus, problems);
   return gpus;
 }
 

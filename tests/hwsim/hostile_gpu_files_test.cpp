@@ -9,6 +9,7 @@
 #include "hwsim/config/toml_nesting.h"
 #include "hwsim/config/toml_value.h"
 #include "hwsim/gpu/gpu_config.h"
+#include "hwsim/gpu/gpu_rules.h"
 #include "hwsim/sample_gpu.h"
 
 namespace hwsim::test {
@@ -136,6 +137,27 @@ TEST_F(HostileGpuFiles, NameNoOtherFolder) {
     EXPECT_EQ(code(std::string(kHead) + "id = \"" + id + "\"\n"), "C019") << id;
   EXPECT_EQ(code(kHead + ("id = \"" + std::string(65, 'x')) + "\"\n"), "C019");
   EXPECT_EQ(code(kHead + ("id = \"" + std::string(64, 'x')) + "\"\n"), "");
+}
+
+TEST(GpuIds, ThatNameOneFolderAreRefusedAndTheSameGpuTwiceIsNot) {
+  const auto problems = [](const std::string& id, double mhz) {
+    std::vector<GpuConfig> gpus(2, sample_gpu());
+    gpus[1].id = id;
+    gpus[1].core_clock_mhz = mhz;
+    std::vector<Diagnostic> found;
+    check_ids(gpus, found);
+    for (const Diagnostic& d : found) EXPECT_EQ(d.code, "C023");
+    return found.size();
+  };
+  EXPECT_EQ(problems("sample", 1000.0), 0u);
+  EXPECT_EQ(problems("sample", 900.0), 1u);
+  EXPECT_EQ(problems("sample2", 1000.0), 0u);
+  std::vector<GpuConfig> folded(2, sample_gpu());
+  folded[0].id = "a b";
+  folded[1].id = "a:b";
+  std::vector<Diagnostic> found;
+  check_ids(folded, found);
+  EXPECT_EQ(found.size(), 1u);
 }
 
 TEST_F(HostileGpuFiles, WrongValuesOfEveryKindSayWhereWhatAndHow) {
