@@ -17,11 +17,6 @@ void add(Problems& problems, std::string code, std::string message, std::string 
 
 std::string quoted(std::string_view text) { return "`" + std::string(text) + "`"; }
 
-std::string did_you_mean(std::string_view name, const std::vector<std::string>& names) {
-  const std::string nearest = nearest_name(name, names);
-  return nearest.empty() ? "" : "did you mean " + quoted(nearest) + "?";
-}
-
 const TechniqueInfo* find_technique(std::string_view id) {
   const auto all = techniques();
   const auto found = std::find_if(all.begin(), all.end(), [&](const TechniqueInfo& t) { return t.id == id; });

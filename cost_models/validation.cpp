@@ -9,12 +9,12 @@
 #include "cost_models/covariance.h"
 #include "cost_models/predictor.h"
 #include "cost_models/statistics.h"
+#include "hwsim/base/units_of_measure.h"
 
 namespace hwsim::cost_models {
 namespace {
 
 constexpr double kCoverage = 0.9;
-constexpr double kMib = 1024.0 * 1024.0;
 
 /// The registry's name of the technique: what a user would call one.
 std::string technique_id(const Cell& cell) {
@@ -311,7 +311,7 @@ std::uint64_t technique_count(const WorkTrace& trace, std::string_view id) {
 
 double counted(const Experiment& experiment, const Replay& replay, std::size_t cell) {
   if (experiment.cells[cell].unit == "mib")
-    return static_cast<double>(replay.trace->allocated_memory_bytes) / kMib;
+    return static_cast<double>(replay.trace->allocated_memory_bytes) / kBytesPerMib;
   return static_cast<double>(technique_count(*replay.trace, "technique.lit_samples"));
 }
 

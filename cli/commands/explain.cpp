@@ -8,6 +8,7 @@
 #include "cli/commands/commands.h"
 #include "cli/terminal/answer.h"
 #include "cli/terminal/progress.h"
+#include "hwsim/base/units_of_measure.h"
 #include "hwsim/engines/sensitivity.h"
 #include "lab/base/messages.h"
 #include "lab/results/results.h"
@@ -17,7 +18,6 @@ namespace hwsim::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr double kNsPerMs = 1e6;
 constexpr double kPercent = 100.0;
 constexpr size_t kTopUnits = 5;
 constexpr double kShownElasticity = 0.0005;  // less than 0.05 % of time for 100 % of value

@@ -9,6 +9,7 @@
 #include "cli/terminal/answer.h"
 #include "cli/terminal/interrupt.h"
 #include "cli/terminal/progress.h"
+#include "hwsim/base/units_of_measure.h"
 #include "lab/base/files.h"
 #include "lab/base/messages.h"
 #include "lab/results/contact_sheet.h"
@@ -22,7 +23,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kNsPerMs = 1e6, kBytesPerMb = 1e6, kBytesPerMib = 1024.0 * 1024.0;
 constexpr int kRegionSidePx = 48, kRegions = 4;
 
 struct Candidate {

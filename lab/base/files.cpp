@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "hwsim/base/content_hash.h"
 #include "pipeline/base/file_io.h"
 
 namespace hwsim::lab {
@@ -47,10 +48,6 @@ std::string config_directory() {
 
 std::string gpu_directory() { return (fs::path(config_directory()) / "gpus").string(); }
 
-std::string hash_hex(std::string_view bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return fmt::format("{:016x}", hash);
-}
+std::string hash_hex(std::string_view bytes) { return fmt::format("{:016x}", fnv1a(bytes)); }
 
 }  // namespace hwsim::lab

@@ -4,15 +4,12 @@
 
 #include <algorithm>
 
+#include "hwsim/base/units_of_measure.h"
 #include "pipeline/image/frame_check.h"
 #include "pipeline/scene/scene.h"
 
 namespace hwsim::lab {
 namespace {
-
-constexpr double kNsPerMs = 1e6;
-constexpr double kBytesPerMb = 1e6;
-constexpr double kBytesPerMib = 1024.0 * 1024.0;
 
 using Json = nlohmann::ordered_json;
 

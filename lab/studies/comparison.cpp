@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "hwsim/base/units_of_measure.h"
 #include "lab/base/files.h"
 #include "lab/base/messages.h"
 #include "lab/results/results.h"
@@ -16,7 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr double kBytesPerMb = 1e6;
 constexpr double kPercent = 100.0;
 
 Cell change_cell(double before, double after) {

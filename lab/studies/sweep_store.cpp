@@ -7,12 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "algos/rooms.h"
+#include "hwsim/base/units_of_measure.h"
 #include "lab/base/messages.h"
 
 namespace hwsim::lab {
 namespace {
-
-constexpr double kNsPerMs = 1e6, kBytesPerMb = 1e6, kBytesPerMib = 1024.0 * 1024.0;
 
 // Raised when a column changes its meaning; columns are only added otherwise.
 constexpr const char* kSchemaVersion = "1";

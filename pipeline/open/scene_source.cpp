@@ -47,9 +47,8 @@ std::string joined(const std::vector<std::string>& names) {
 
 [[noreturn]] void fail_unknown(const std::string& code, const std::string& what, const std::string& name,
                                const std::vector<std::string>& candidates) {
-  const std::string nearest = nearest_name(name, candidates);
-  const std::string hint = nearest.empty() ? "" : "did you mean `" + nearest + "`?";
-  fail(code, "unknown " + what + " `" + name + "`", hint, "known: " + joined(candidates));
+  fail(code, "unknown " + what + " `" + name + "`", did_you_mean(name, candidates),
+       "known: " + joined(candidates));
 }
 
 const generate::Generator& find_generator(const std::string& name) {
