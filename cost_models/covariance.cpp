@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <utility>
 
 #include "cost_models/predictor.h"
 
@@ -24,10 +25,14 @@ std::vector<std::size_t> free_parameters(const Experiment& experiment, const std
   return free;
 }
 
-/// The rows of the weighted Jacobian, without the noise, and the weighted sum of squares.
+/// The rows of the weighted Jacobian and the weighted residuals, without the noise, and their sums. The sums
+/// of all parameters also hold those at a bound.
 struct Linearization {
-  Eigen::MatrixXd rows;
+  Eigen::MatrixXd rows;  ///< of the free parameters
+  Eigen::VectorXd residuals;
+  std::vector<double> slope, curvature;  ///< of all parameters: row by residual, row by row
   double squares = 0.0, weights = 0.0;
+  double loss = 0.0;  ///< the Cauchy loss of all residuals, in units of robust_log^2
 };
 
 Linearization linearize(const Experiment& experiment, const std::vector<bool>& use,
@@ -36,6 +41,9 @@ Linearization linearize(const Experiment& experiment, const std::vector<bool>& u
   predictor.evaluate(fit.log_values, true);
   Linearization result;
   result.rows.resize(static_cast<Eigen::Index>(fit.fitted_values), static_cast<Eigen::Index>(free.size()));
+  result.residuals.resize(static_cast<Eigen::Index>(fit.fitted_values));
+  result.slope.assign(experiment.parameters.size(), 0.0);
+  result.curvature = result.slope;
   Eigen::Index row = 0;
   for (std::size_t cell = 0; cell < use.size(); ++cell) {
     if (!use[cell]) continue;
@@ -43,6 +51,13 @@ Linearization linearize(const Experiment& experiment, const std::vector<bool>& u
     const double weight = 1.0 / (1.0 + (r / options.robust_log) * (r / options.robust_log));
     for (std::size_t k = 0; k < free.size(); ++k)
       result.rows(row, static_cast<Eigen::Index>(k)) = std::sqrt(weight) * predictor[cell].gradient[free[k]];
+    const std::vector<double>& gradient = predictor[cell].gradient;
+    for (std::size_t k = 0; k < gradient.size(); ++k) {
+      result.slope[k] += weight * r * gradient[k];
+      result.curvature[k] += weight * gradient[k] * gradient[k];
+    }
+    result.residuals(row) = std::sqrt(weight) * r;
+    result.loss += std::log1p((r / options.robust_log) * (r / options.robust_log));
     result.squares += weight * r * r;
     result.weights += weight;
     ++row;
@@ -65,6 +80,54 @@ double condition_of(const Eigen::MatrixXd& information) {
   return std::sqrt(values.maxCoeff() / std::max(values.minCoeff(), 1e-300));
 }
 
+/// Slope and curvature of the prior's part of the cost.
+std::pair<double, double> prior_terms(const Parameter& p, double log_value) {
+  if (p.prior_log_sd <= 0.0) return {0.0, 0.0};
+  const double variance = p.prior_log_sd * p.prior_log_sd;
+  return {(log_value - std::log(p.start)) / variance, 1.0 / variance};
+}
+
+/// The cost that the solver minimizes.
+double cost_of(const Experiment& experiment, const std::vector<bool>& used, const FitOptions& options,
+               const Linearization& linear, const Fit& fit) {
+  const double scale = options.robust_log / options.noise_log_sd;
+  double sum = scale * scale * linear.loss;
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    if (!used[k]) continue;
+    const auto [slope, curvature] = prior_terms(experiment.parameters[k], fit.log_values[k]);
+    if (curvature > 0.0) sum += slope * slope / curvature;
+  }
+  return 0.5 * sum;
+}
+
+/// What a Gauss-Newton step of the free parameters would save, and a step of each one that leaves its bound.
+double gain_of(const Experiment& experiment, const std::vector<bool>& used,
+               const std::vector<std::size_t>& free, const FitOptions& options, const Linearization& linear,
+               const Fit& fit) {
+  const double noise = options.noise_log_sd * options.noise_log_sd;
+  Eigen::VectorXd slope = linear.rows.transpose() * linear.residuals / noise;
+  Eigen::MatrixXd curvature = linear.rows.transpose() * linear.rows / noise;
+  std::vector<bool> bound = used;
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    const auto [prior_slope, prior_curvature] =
+        prior_terms(experiment.parameters[free[k]], fit.log_values[free[k]]);
+    slope(i) += prior_slope;
+    curvature(i, i) += prior_curvature;
+    bound[free[k]] = false;
+  }
+  double gain = free.empty() ? 0.0 : 0.5 * slope.dot(inverse(curvature) * slope);
+  for (std::size_t k = 0; k < bound.size(); ++k) {
+    if (!bound[k]) continue;
+    const Parameter& p = experiment.parameters[k];
+    const auto [prior_slope, prior_curvature] = prior_terms(p, fit.log_values[k]);
+    const double g = linear.slope[k] / noise + prior_slope, h = linear.curvature[k] / noise + prior_curvature;
+    const bool at_low = fit.log_values[k] < 0.5 * (std::log(p.low) + std::log(p.high));
+    if (h > 0.0 && (at_low ? g < 0.0 : g > 0.0)) gain += 0.5 * g * g / h;
+  }
+  return gain;
+}
+
 }  // namespace
 
 void add_covariance(const Experiment& experiment, const std::vector<bool>& use, const std::vector<bool>& used,
@@ -75,6 +138,8 @@ void add_covariance(const Experiment& experiment, const std::vector<bool>& use, 
   const Linearization linear = linearize(experiment, use, free, options, fit);
   const double freedom = std::max(1.0, linear.weights - static_cast<double>(free.size()));
   fit.residual_log_sd = std::sqrt(std::max(linear.squares / freedom, 1e-12));
+  fit.cost = cost_of(experiment, used, options, linear, fit);
+  fit.gain_ratio = fit.cost > 0.0 ? gain_of(experiment, used, free, options, linear, fit) / fit.cost : 0.0;
   if (free.empty()) return;
   Eigen::MatrixXd information =
       linear.rows.transpose() * linear.rows / (fit.residual_log_sd * fit.residual_log_sd);

@@ -4,8 +4,8 @@
 
 namespace hwsim::cost_models {
 
-/// Fills covariance, residual_log_sd, condition and correlations from the linearization at the optimum. The
-/// noise is the residuals' own; parameters at a bound are held there.
+/// Fills cost, gain_ratio, covariance, residual_log_sd, condition and correlations from the linearization at
+/// the optimum. The noise is the residuals' own; parameters at a bound are held there.
 void add_covariance(const Experiment& experiment, const std::vector<bool>& use, const std::vector<bool>& used,
                     const FitOptions& options, Fit& fit);
 

@@ -12,7 +12,6 @@
 namespace hwsim::cost_models {
 namespace {
 
-constexpr double kSameCost = 1e-3;       // relative; starts that end closer to the best are the same optimum
 constexpr double kBoundDistance = 1e-6;  // in ln(value)
 constexpr std::size_t kValuesPerParameter = 4;
 
@@ -232,6 +231,16 @@ void set_estimates(const Experiment& experiment, const std::vector<bool>& used, 
   }
 }
 
+/// What is known about the fit at its values: cost, uncertainty, estimates.
+void describe(const Experiment& experiment, const std::vector<bool>& use, const std::vector<bool>& used,
+              const FitOptions& options, Fit& result) {
+  result.fitted_values = static_cast<std::size_t>(std::count(use.begin(), use.end(), true));
+  result.used_parameters = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
+  add_covariance(experiment, use, used, options, result);
+  set_typical_factors(experiment, used, result);
+  set_estimates(experiment, used, result);
+}
+
 }  // namespace
 
 std::vector<bool> fitted_cells(const Experiment& experiment) {
@@ -293,11 +302,17 @@ Fit fit(const Experiment& experiment, const std::vector<bool>& use, const std::v
   for (StartOutcome& outcome : result.starts)
     outcome.same_optimum = outcome.cost <= result.cost * (1.0 + kSameCost) + 1e-9;
   result.log_values = ends[best];
-  result.fitted_values = static_cast<std::size_t>(std::count(use.begin(), use.end(), true));
-  result.used_parameters = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
-  add_covariance(experiment, use, used, options, result);
-  set_typical_factors(experiment, used, result);
-  set_estimates(experiment, used, result);
+  describe(experiment, use, used, options, result);
+  return result;
+}
+
+Fit fit_at(const Experiment& experiment, const std::vector<bool>& use, const std::vector<double>& log_values,
+           const FitOptions& options) {
+  Fit result;
+  result.log_values = log_values;
+  result.converged = true;
+  describe(experiment, use, used_parameters(experiment, use), options, result);
+  result.start_cost = result.cost;
   return result;
 }
 

@@ -50,6 +50,7 @@ struct Fit {
   double residual_log_sd = 0.0;
   std::size_t fitted_values = 0, used_parameters = 0;
   double start_cost = 0.0, cost = 0.0;
+  double gain_ratio = 0.0;  ///< part of the cost that a further step would save; an optimum has none
   int iterations = 0;
   bool converged = false;
   std::string message;     ///< what the solver said
@@ -62,6 +63,14 @@ struct Fit {
 /// typical factors of the others, with their spread as variance.
 Fit fit(const Experiment& experiment, const std::vector<bool>& use, const std::vector<double>& start,
         const FitOptions& options);
+
+/// Two fits whose costs differ by less than this part are in the same optimum.
+inline constexpr double kSameCost = 1e-3;
+
+/// The fit that ended at `log_values`, with all that fit() says about it, after one evaluation: nothing is
+/// solved. It is an optimum where gain_ratio is below kSameCost.
+Fit fit_at(const Experiment& experiment, const std::vector<bool>& use, const std::vector<double>& log_values,
+           const FitOptions& options);
 
 /// Cells of use `fitted` that a replay predicts.
 std::vector<bool> fitted_cells(const Experiment& experiment);

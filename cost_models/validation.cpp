@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -115,9 +116,9 @@ class Validator {
     refit_.starts = 1;
     refit_.convex_first = false;  // they begin at an optimum
     refit_.progress = nullptr;
-    const std::vector<double>* known = known_optimum(Split::in_sample, "");
-    validation.fit = known ? fit(experiment_, all_, *known, refit_)
-                           : fit(experiment_, all_, Predictor(experiment_, 1).start(), options_);
+    std::optional<Fit> known = known_fit(Split::in_sample, "", all_);
+    validation.fit =
+        known ? std::move(*known) : fit(experiment_, all_, Predictor(experiment_, 1).start(), options_);
     optimum_ = validation.fit.log_values;
     optima_ = {{Split::in_sample, "", optimum_}};
     for (int s = 0; s < kSplitCount; ++s)
@@ -143,6 +144,13 @@ class Validator {
     for (const FoldOptimum& k : known_)
       if (k.split == split && k.fold == fold) return &k.log_values;
     return nullptr;
+  }
+  /// The known optimum, where it still is one.
+  std::optional<Fit> known_fit(Split split, const std::string& fold, const std::vector<bool>& use) const {
+    const std::vector<double>* known = known_optimum(split, fold);
+    if (known == nullptr) return std::nullopt;
+    Fit at = fit_at(experiment_, use, *known, refit_);
+    return at.gain_ratio < kSameCost ? std::optional(std::move(at)) : std::nullopt;
   }
   void step(const std::string& what) { progress_(done_++, steps_, what); }
 
@@ -171,7 +179,9 @@ class Validator {
     for (std::size_t i = 0; i < all_.size(); ++i)
       if (names[i] == fold) train[i] = false, test[i] = true;
     step(std::string(split_name(split)) + ": " + fold);
-    const Fit part = fit(experiment_, train, start_of(split, fold, train), refit_);
+    std::optional<Fit> known = known_fit(split, fold, train);
+    const Fit part =
+        known ? std::move(*known) : fit(experiment_, train, start_of(split, fold, train), refit_);
     optima_.push_back({split, fold, part.log_values});
     const std::vector<HeldOut> cells = predict_marked(experiment_, part, test, fold, options_.jobs);
     result.cells.insert(result.cells.end(), cells.begin(), cells.end());

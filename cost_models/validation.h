@@ -61,8 +61,9 @@ struct Validation {
   std::size_t shaded_samples_cells = 0, memory_cells = 0;
 };
 
-/// Fits to all, then to each complement of a fold, from the optimum of all. A fit whose optimum is in `known`
-/// begins there: it ends within the solver's tolerance of it, after two evaluations in place of dozens.
+/// Fits to all, then to each complement of a fold, from the optimum of all. Where `known` holds a fold's
+/// optimum, and it still is one within kSameCost, one evaluation there takes the place of the fit; otherwise
+/// the fit begins there.
 Validation validate(const Experiment& experiment, const FitOptions& options, const StepProgress& progress,
                     const std::vector<FoldOptimum>& known = {});
 
