@@ -5,6 +5,7 @@
 #include "cli/commands/commands.h"
 #include "cli/terminal/answer.h"
 #include "cli/terminal/progress.h"
+#include "cost_models/accuracy.h"
 #include "lab/base/files.h"
 #include "lab/studies/published_runs.h"
 #include "lab/studies/validation_report.h"
@@ -22,6 +23,8 @@ ExitStatus validate(const ValidateOptions& options, Context& context) {
     print({.table = plan_table(cells)}, options.common);
     return ExitStatus::done;
   }
+  const std::vector<cost_models::Statement> statements = cost_models::load_statements(
+      (std::filesystem::path(config_directory()) / "calibration" / "accuracy.csv").string());
   const cost_models::Experiment experiment =
       load_experiment(std::move(cells), options.common.jobs, context.log);
   Progress progress(options.common, context.terminal);
@@ -45,9 +48,8 @@ ExitStatus validate(const ValidateOptions& options, Context& context) {
                     (not_run.rows.empty() ? "" : "\n" + to_text(not_run)),
          .json = &json},
         options.common);
-  const std::vector<std::string> broken = broken_statements(
-      validation, options.papers,
-      (std::filesystem::path(config_directory()) / "calibration" / "accuracy.csv").string());
+  const std::vector<std::string> broken =
+      cost_models::broken_statements(statements, validation, options.papers);
   for (const std::string& sentence : broken) context.log.say("accuracy: " + sentence);
   return broken.empty() ? ExitStatus::done : ExitStatus::check_not_met;
 }

@@ -89,20 +89,29 @@ std::vector<cost_models::Cell> published_cells(const std::vector<std::string>& p
   return cells;
 }
 
-Experiment load_experiment(std::vector<cost_models::Cell> cells, int jobs, Observer& observer) {
+cost_models::TraceSource emulated_traces(int jobs, Observer& observer) {
+  return [traces = std::make_shared<RunTraces>(jobs, observer)](const RunSpec& spec, const GpuConfig& gpu) {
+    return traces->trace(spec, gpu);
+  };
+}
+
+Experiment load_experiment(std::vector<cost_models::Cell> cells, const cost_models::TraceSource& traces,
+                           Observer& observer) {
   std::map<std::string, GpuConfig> gpus;
   for (const cost_models::Cell& cell : published_cells({}))  // parameters name GPUs of every paper
     if (cell.has_run && !gpus.contains(cell.run.gpu))
       gpus.emplace(cell.run.gpu, load_gpu(cell.run.gpu, {}, {}, gpu_directory()));
-  RunTraces traces(jobs, observer);
   Experiment experiment = cost_models::make_experiment(
       std::move(cells), gpus, (fs::path(config_directory()) / "calibration" / "parameters.csv").string(),
-      [&](const RunSpec& spec, const GpuConfig& gpu) { return traces.trace(spec, gpu); },
-      [&](std::size_t done, std::size_t all, const std::string& what) {
+      traces, [&](std::size_t done, std::size_t all, const std::string& what) {
         observer.progress(all == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(all), what);
       });
   observer.progress_ended();
   return experiment;
+}
+
+Experiment load_experiment(std::vector<cost_models::Cell> cells, int jobs, Observer& observer) {
+  return load_experiment(std::move(cells), emulated_traces(jobs, observer), observer);
 }
 
 Table plan_table(const std::vector<cost_models::Cell>& cells) {

@@ -18,7 +18,14 @@ void check_papers(const std::vector<std::string>& papers);
 /// Rows of the papers (all when empty) with what is done with them, from configs/published.
 std::vector<cost_models::Cell> published_cells(const std::vector<std::string>& papers);
 
-/// Emulates what the cache does not have. Rows that cannot run are in `not_run`.
+/// Gives a run the trace that `run` would make, from the cache where it is there. `observer` must outlive it.
+cost_models::TraceSource emulated_traces(int jobs, Observer& observer);
+
+/// The cells with what predicts them. Rows that cannot run are in `not_run`.
+cost_models::Experiment load_experiment(std::vector<cost_models::Cell> cells,
+                                        const cost_models::TraceSource& traces, Observer& observer);
+
+/// The same from emulated traces.
 cost_models::Experiment load_experiment(std::vector<cost_models::Cell> cells, int jobs, Observer& observer);
 
 /// Rows and their runs, without running anything.

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "cost_models/statistics.h"
-#include "hwsim/base/csv.h"
 
 namespace hwsim::lab {
 namespace {
@@ -49,18 +48,6 @@ Table figures_table(const std::string& first) {
            {"coverage90_pct", "in 90 % interval", true},
            {"worst", "worst cell", false, 60}},
           {}};
-}
-
-double measured(const Validation& validation, const std::string& split, const std::string& figure) {
-  for (const SplitResult& s : validation.splits) {
-    if (cost_models::split_name(s.split) != split) continue;
-    if (figure == "kendall") return s.figures.kendall;
-    if (figure == "coverage90_pct") return s.figures.coverage90_pct;
-    return figure == "mape_pct" ? s.figures.mape_pct : s.figures.median_ape_pct;
-  }
-  if (split == "counts")
-    return figure == "mape_pct" ? validation.shaded_samples_mape_pct : validation.memory_worst_pct;
-  return 0.0;
 }
 
 }  // namespace
@@ -135,24 +122,6 @@ Table worst_table(const Experiment& experiment, const Validation& validation, st
                             Real{cells[i].predicted_ms, 2}, cell_name(experiment.cells[cells[i].cell])});
   }
   return table;
-}
-
-std::vector<std::string> broken_statements(const Validation& validation,
-                                           const std::vector<std::string>& papers, const std::string& path) {
-  const CsvFile file = read_csv(path);
-  const std::string about = papers.empty() ? "all" : fmt::format("{}", fmt::join(papers, " "));
-  std::vector<std::string> broken;
-  for (const std::vector<std::string>& row : file.rows) {
-    if (row[file.column("papers")] != about) continue;
-    const std::string& split = row[file.column("split")];
-    const std::string& figure = row[file.column("figure")];
-    const double value = measured(validation, split, figure);
-    const double low = std::stod(row[file.column("low")]), high = std::stod(row[file.column("high")]);
-    if (value < low || value > high)
-      broken.push_back(
-          fmt::format("{} of {} is {:.3g}, stated are {:.3g} to {:.3g}", figure, split, value, low, high));
-  }
-  return broken;
 }
 
 }  // namespace hwsim::lab

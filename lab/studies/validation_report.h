@@ -20,10 +20,6 @@ Table label_table(const cost_models::Experiment& experiment, const cost_models::
 Table worst_table(const cost_models::Experiment& experiment, const cost_models::Validation& validation,
                   std::size_t count);
 
-/// What an accuracy statement says does not hold; empty when all do. configs/calibration/accuracy.csv.
-std::vector<std::string> broken_statements(const cost_models::Validation& validation,
-                                           const std::vector<std::string>& papers, const std::string& path);
-
 /// "grass, sbaa_top:n=2,msaa=8 on hd5870, frame (sbaa_table2_frame_time_memory:12)".
 std::string cell_name(const cost_models::Cell& cell);
 

@@ -1,0 +1,55 @@
+// The kept traces that the accuracy test reads are those that this version emulates: a run of each paper,
+// anew.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include "cost_models/kept_traces.h"
+#include "hwsim/trace/trace_file.h"
+#include "lab/base/observer.h"
+#include "lab/studies/published_runs.h"
+#include "support/places.h"
+
+namespace hwsim::lab::test {
+namespace {
+
+using cost_models::KeptTraces;
+
+KeptTraces kept_traces() {
+  std::ifstream in(hwsim::test::source_dir() + "/tests/data/published.traces", std::ios::binary);
+  const std::vector<std::uint8_t> bytes((std::istreambuf_iterator<char>(in)), {});
+  return cost_models::decode_kept(bytes);
+}
+
+/// The trace as bytes. Reuse profiles differ between compilers; the kept ones are of g++.
+std::vector<std::uint8_t> comparable(WorkTrace trace) {
+#ifdef __clang__
+  for (PassWork& pass : trace.passes) pass.reuse = {};
+#endif
+  return encode_trace(trace);
+}
+
+TEST(KeptWork, IsWhatThisVersionEmulates) {
+  setenv("HWSIM_CACHE", (hwsim::test::binary_dir() + "/test-cache").c_str(), 1);
+  const KeptTraces kept = kept_traces();
+  Observer silent;
+  const cost_models::TraceSource traces = emulated_traces(2, silent);
+  std::size_t compared = 0;
+  for (const char* run_begins :
+       {"sbaa_merge:n=2,msaa=8,centroid=off of dragon", "agaa:c=2,msaa=8,diffuse_filter=folded of metal",
+        "sss_cs:mode=or,theta_c=2,tau=0.05,rest=frame,k_max=256 of car_body at", "axaa of sponza_hall"})
+    for (const auto& [run, trace] : kept.traces) {
+      if (run.to_string().rfind(run_begins, 0) != 0) continue;
+      ++compared;
+      const GpuConfig gpu = load_gpu(run.gpu, {}, {}, hwsim::test::source_dir() + "/configs/gpus");
+      EXPECT_EQ(comparable(*traces(run, gpu)), comparable(*trace))
+          << run.to_string() << ": where this was meant, scripts/keep_traces.sh keeps the new work";
+      break;
+    }
+  EXPECT_EQ(compared, 4u);
+}
+
+}  // namespace
+}  // namespace hwsim::lab::test
