@@ -10,7 +10,6 @@
 
 #include "pipeline/image/image.h"
 #include "pipeline/simd/scalar_lane-inl.h"
-#include "pipeline/image/image.h"
 
 namespace hwsim::pipeline {
 namespace {
