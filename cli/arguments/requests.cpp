@@ -60,6 +60,13 @@ Request request_with(const RunOptions& options, std::vector<Diagnostic>& problem
 
 }  // namespace
 
+std::vector<Assignment> parse_sets(const std::vector<std::string>& texts) {
+  std::vector<Diagnostic> problems;
+  std::vector<Assignment> sets = parse_sets(texts, problems);
+  if (!problems.empty()) throw InputError(problems);
+  return sets;
+}
+
 Request request_of(const RunOptions& options) {
   std::vector<Diagnostic> problems;
   Request request = request_with(options, problems);
@@ -69,10 +76,6 @@ Request request_of(const RunOptions& options) {
 
 RunPlan plan_of(const RunOptions& options) {
   ConfigFiles files;
-  return plan_of(options, files);
-}
-
-RunPlan plan_of(const RunOptions& options, ConfigFiles& files) {
   std::vector<Diagnostic> problems;
   const Request request = request_with(options, problems);
   RunPlan plan = make_plan(request, files, problems);

@@ -8,8 +8,9 @@ namespace hwsim::cli {
 /// A run.toml or defaults, then `--set`, then flags. Throws InputError with every problem found.
 lab::Request request_of(const RunOptions& options);
 lab::RunPlan plan_of(const RunOptions& options);
-/// The same, with files that are kept from one plan to the next.
-lab::RunPlan plan_of(const RunOptions& options, lab::ConfigFiles& files);
+
+/// "path=value" each. Throws InputError with every problem found.
+std::vector<Assignment> parse_sets(const std::vector<std::string>& texts);
 
 /// Only scene.* may be set.
 lab::View view_of(const ViewOptions& options);

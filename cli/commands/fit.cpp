@@ -1,16 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
 
 #include "cli/commands/commands.h"
 #include "cli/terminal/answer.h"
-#include "cli/terminal/progress.h"
-#include "cost_models/calibration.h"
-#include "lab/base/files.h"
-#include "lab/base/messages.h"
-#include "lab/results/run_directory.h"
+#include "lab/lab.h"
 #include "lab/studies/published_runs.h"
 
 namespace hwsim::cli {
@@ -18,7 +12,6 @@ namespace {
 
 using cost_models::Experiment;
 using cost_models::Fit;
-using cost_models::Validation;
 
 std::string state_of(const cost_models::Estimate& e) {
   if (!e.used) return "no data";
@@ -76,51 +69,24 @@ std::string heading(const Fit& fit, double wall_s) {
       fit.condition);
 }
 
-void write_calibration(const Experiment& experiment, const Validation& validation,
-                       const FitOptions& options) {
-  OutPlace out = options.out;
-  if (out.directory.empty()) out.directory = "calibrated";
-  RunDirectory directory(out, "fit");
-  const cost_models::Calibration calibration = cost_models::make_calibration(experiment, validation);
-  for (const GpuConfig& gpu : experiment.gpus)
-    if (calibration.techniques.contains(gpu.id))
-      write_file(directory.path(gpu.id + ".toml"), cost_models::calibrated_file(gpu, calibration));
-  write_file(directory.path("calibration.json"), cost_models::to_json(calibration));
-  write_file(directory.path("manifest.json"), "{\"written_by\": \"hwsim fit\"}\n");
-  directory.commit();
-}
-
 }  // namespace
 
 ExitStatus fit(const FitOptions& options, Context& context) {
-  std::vector<cost_models::Cell> cells = published_cells(options.papers);
   if (options.dry_run) {
-    print({.table = plan_table(cells)}, options.common);
+    print({.table = plan_table(published_cells(options.papers))}, options.common);
     return ExitStatus::done;
   }
-  const Experiment experiment = load_experiment(std::move(cells), options.common.jobs, context.log);
-  cost_models::check_parameter_count(experiment, cost_models::fitted_cells(experiment));
-  Progress progress(options.common, context.terminal);
-  const auto start = std::chrono::steady_clock::now();
-  cost_models::FitOptions fit_options;
-  fit_options.jobs = options.common.jobs;
-  fit_options.starts = options.starts;
-  double fit_wall_s = 0.0;
-  const Validation validation = cost_models::validate(
-      experiment, fit_options, [&](std::size_t done, std::size_t all, const std::string& what) {
-        if (done == 1)
-          fit_wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        progress.update(static_cast<double>(done) / static_cast<double>(all), what);
-      });
-  progress.finish();
-  write_calibration(experiment, validation, options);
-  const Table not_run = not_run_table(experiment);
-  print({.table = parameter_table(experiment, validation.fit),
-         .heading = heading(validation.fit, fit_wall_s),
-         .footing = "\n" + starts_text(validation.fit) + correlations_text(experiment, validation.fit) +
+  Lab lab({.jobs = options.common.jobs, .observer = &context.log});
+  const lab::Validation answer = lab.fit(options.papers, options.starts);
+  write_calibration(answer, options.out);
+  const Fit& fit = answer.figures.fit;
+  const Table not_run = not_run_table(answer.experiment);
+  print({.table = parameter_table(answer.experiment, fit),
+         .heading = heading(fit, answer.fit_wall_s),
+         .footing = "\n" + starts_text(fit) + correlations_text(answer.experiment, fit) +
                     (not_run.rows.empty() ? "" : "\n" + to_text(not_run))},
         options.common);
-  return validation.fit.converged ? ExitStatus::done : ExitStatus::run_failed;
+  return fit.converged ? ExitStatus::done : ExitStatus::run_failed;
 }
 
 }  // namespace hwsim::cli

@@ -1,25 +1,20 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstdio>
-#include <memory>
-#include <optional>
 
 #include "cli/arguments/requests.h"
 #include "cli/commands/commands.h"
+#include "cli/commands/lab_options.h"
 #include "cli/terminal/answer.h"
 #include "cli/terminal/interrupt.h"
 #include "cli/terminal/progress.h"
 #include "lab/base/files.h"
 #include "lab/request/image_input.h"
-#include "lab/results/run_files.h"
+#include "lab/results/run_record.h"
 #include "lab/store/cache.h"
 
 namespace hwsim::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 
 std::string plan_key(const RunPlan& plan, int jobs) {
   std::string key = fmt::format("{}|{}x{}|{}|{}|{}|{}|{}", plan.view.scene, plan.view.resolution.width_px,
@@ -48,144 +43,74 @@ std::string plan_text(const RunPlan& plan, int jobs) {
   return text;
 }
 
-/// A run in progress: what the points share, and what they leave behind.
-class Run {
+/// Records the points, logs them, and keeps what the answer shows of a single one.
+class ShownRun : public RunSink {
  public:
-  Run(const RunOptions& options, Context& context);
-  ExitStatus finish();
+  ShownRun(RunRecord& record, Log& log) : record_(record), log_(log) {}
+
+  void begin(const RunContext& run) override {
+    record_.begin(run);
+    if (run.reference)
+      log_.detail(fmt::format("reference: {}{}", duration_text(run.reference->wall_s),
+                              run.reference->from_cache ? ", from the cache" : ""));
+  }
+
+  void point(const PointResult& point, const RunContext& run) override {
+    record_.point(point, run);
+    answer.heading = headline(make_result(point, run.plan, run.scene.name), limiter_share_ratio(point));
+    log_.detail(answer.heading);
+    for (const Diagnostic& warning : result_warnings(point)) log_.report(warning);
+    answer.heading += "\n";
+    answer.table = pass_table(point);
+    answer.footing = "\n" + to_text(unit_table(point));
+  }
+
+  Answer answer;  ///< of the last point
 
  private:
-  void load();
-  void simulate();
-  void record(const PointResult& point);
-  Answer answer() const;
-  Json manifest_now(const std::string& state) const;
-  void stage_progress(double done_ratio, const std::string& what);
-
-  const RunOptions& options_;
-  Context& context_;
-  Clock::time_point start_ = Clock::now();
-  InterruptGuard guard_;
-  RunPlan plan_;
-  std::unique_ptr<RunDirectory> directory_;
-  std::unique_ptr<Progress> progress_;
-  size_t stages_ = 0, stage_ = 0;
-
-  std::unique_ptr<SceneView> scene_;
-  std::optional<ReferenceImage> reference_;
-  std::vector<std::vector<Cell>> rows_;
-  Json results_ = Json::array();
-  std::string heading_, footing_;
-  Table single_;
-  std::uint64_t fragments_ = 0;
-  double emulation_s_ = 0.0;
+  RunRecord& record_;
+  Log& log_;
 };
 
-Run::Run(const RunOptions& options, Context& context) : options_(options), context_(context) {
-  plan_ = plan_of(options);
-  context_.log.say(plan_text(plan_, options.common.jobs));
-  directory_ = std::make_unique<RunDirectory>(options.out, plan_key(plan_, options.common.jobs));
-  guard_.remove_on_interrupt(directory_->partial());
-  stages_ = plan_.techniques.size() * plan_.gpus.size() + (plan_.reference_samples > 0 ? 1 : 0);
-  progress_ = std::make_unique<Progress>(options.common, context_.terminal);
-  load();
-  try {
-    simulate();
-  } catch (const InternalError&) {
-    progress_->finish();
-    std::fprintf(stderr, "%s\n", manifest_now("failed").dump(2).c_str());
-    throw;
-  }
-  progress_->finish();
+/// The lab's answer; the manifest of a run that broke a law of hwsim is printed, to be attached to a report.
+lab::Run simulate(const RunPlan& plan, const RunOptions& options, RunRecord& record, ShownRun& shown,
+                  Log& log) try {
+  return Lab(lab_options(options, log)).run(plan, &shown);
+} catch (const InternalError&) {
+  std::fprintf(stderr, "%s\n", record.manifest("failed").dump(2).c_str());
+  throw;
 }
 
-void Run::stage_progress(double done_ratio, const std::string& what) {
-  progress_->update((static_cast<double>(stage_) + done_ratio) / static_cast<double>(stages_), what);
-}
-
-void Run::load() {
-  scene_ = std::make_unique<SceneView>(plan_.view, context_.log);
-  plan_.view.resolution = scene_->plan().resolution;  // an image in place of a scene brings its own
-  if (plan_.reference_samples == 0) return;
-  reference_ = make_reference(*scene_, plan_.reference_samples, options_.common.jobs,
-                              [this](double done, const std::string& what) { stage_progress(done, what); });
-  context_.log.detail(fmt::format("reference: {}{}", duration_text(reference_->wall_s),
-                                  reference_->from_cache ? ", from the cache" : ""));
-  ++stage_;
-}
-
-void Run::simulate() {
-  TraceStore store({.jobs = options_.common.jobs, .disk = !options_.no_cache}, context_.log);
-  Simulator simulator(plan_, *scene_, reference_ ? &*reference_ : nullptr, store);
-  for (const algos::TechniqueChoice& technique : plan_.techniques)
-    for (const GpuConfig& gpu : plan_.gpus) {
-      const std::string name = algos::technique_text(technique) + " on " + gpu.id;
-      stage_progress(0.0, name);
-      record(simulator.run(technique, gpu, [&](double done, const std::string& pass) {
-        stage_progress(done, name + ": " + pass);
-      }));
-      ++stage_;
-      stage_progress(0.0, name);
-    }
-}
-
-void Run::record(const PointResult& point) {
-  const bool alone = plan_.techniques.size() * plan_.gpus.size() == 1;
-  const std::string& scene = scene_->summary().name;
-  write_point_files(alone ? directory_->partial().string() : directory_->path(point_folder(point)), point,
-                    plan_, scene, reference_ ? &*reference_ : nullptr);
-  if (!point.from_cache) {
-    fragments_ += shader_invocations(point.emulation->trace);
-    emulation_s_ += point.emulation->wall_s;
-  }
-  rows_.push_back(summary_row(point));
-  results_.push_back(result_json(point, plan_, scene));
-  context_.log.detail(headline(point, plan_, scene));
-  for (const Diagnostic& warning : result_warnings(point)) context_.log.report(warning);
-  if (!alone) return;
-  heading_ = headline(point, plan_, scene) + "\n";
-  single_ = pass_table(point);
-  footing_ = "\n" + to_text(unit_table(point));
-}
-
-Json Run::manifest_now(const std::string& state) const {
-  return manifest({.arguments = context_.arguments,
-                   .plan = &plan_,
-                   .scene = scene_ ? &scene_->summary() : nullptr,
-                   .wall_s = std::chrono::duration<double>(Clock::now() - start_).count(),
-                   .fragments = fragments_,
-                   .emulation_s = emulation_s_,
-                   .state = state});
-}
-
-ExitStatus Run::finish() {
-  const bool alone = results_.size() == 1;
-  const Table summary = summary_table(rows_);
-  if (!alone) write_file(directory_->path("summary.csv"), to_csv(summary));
-  const Json manifest = manifest_now("done");
-  write_file(directory_->path("manifest.json"), manifest.dump(2) + "\n");
-  write_file(directory_->path("log.txt"), context_.log.text());
-  directory_->commit();
-  guard_.keep();
-  remember_seconds(plan_key(plan_, options_.common.jobs), manifest["wall_s"]);
-
-  const Json several = {{"schema_version", kResultSchemaVersion}, {"results", results_}};
-  const std::string title = fmt::format("{} at {}x{}\n\n", scene_->summary().name,
-                                        plan_.view.resolution.width_px, plan_.view.resolution.height_px);
-  print({.table = alone ? single_ : summary,
-         .heading = alone ? heading_ : title,
-         .footing = footing_,
-         .json = alone ? &results_.front() : &several},
-        options_.common);
-  const std::string place = directory_->final_place().string();
-  context_.log.say("results: " + place);
-  if (context_.terminal.error_is_terminal && plan_.reference_samples == 0)
-    context_.log.say("next: repeat with --reference for the error of the images");
-  return ExitStatus::done;
+Answer several_points(const lab::Run& run) {
+  return {.table = summary_table(run.results),
+          .heading =
+              fmt::format("{} at {}x{}\n\n", run.scene, run.resolution.width_px, run.resolution.height_px)};
 }
 
 }  // namespace
 
-ExitStatus run(const RunOptions& options, Context& context) { return Run(options, context).finish(); }
+ExitStatus run(const RunOptions& options, Context& context) {
+  InterruptGuard guard;
+  const RunPlan plan = plan_of(options);
+  const std::string key = plan_key(plan, options.common.jobs);
+  context.log.say(plan_text(plan, options.common.jobs));
+  RunRecord record(options.out, {plan, key, context.arguments});
+  guard.remove_on_interrupt(record.partial());
+  ShownRun shown(record, context.log);
+  const lab::Run run = simulate(plan, options, record, shown, context.log);
+  Answer answer = run.results.size() == 1 ? shown.answer : several_points(run);
+  if (run.results.size() > 1) write_file(record.path("summary.csv"), to_csv(answer.table));
+  const std::string place = record.commit(context.log.text());
+  guard.keep();
+  remember_seconds(key, record.wall_s());
+
+  const nlohmann::ordered_json json = to_json(run);
+  answer.json = &json;
+  print(answer, options.common);
+  context.log.say("results: " + place);
+  if (context.terminal.error_is_terminal && plan.reference_samples == 0)
+    context.log.say("next: repeat with --reference for the error of the images");
+  return ExitStatus::done;
+}
 
 }  // namespace hwsim::cli

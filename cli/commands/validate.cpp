@@ -4,9 +4,9 @@
 
 #include "cli/commands/commands.h"
 #include "cli/terminal/answer.h"
-#include "cli/terminal/progress.h"
 #include "cost_models/accuracy.h"
 #include "lab/base/files.h"
+#include "lab/lab.h"
 #include "lab/studies/published_runs.h"
 #include "lab/studies/validation_report.h"
 
@@ -18,23 +18,16 @@ constexpr std::size_t kWorstCells = 10;
 }  // namespace
 
 ExitStatus validate(const ValidateOptions& options, Context& context) {
-  std::vector<cost_models::Cell> cells = published_cells(options.papers);
   if (options.dry_run) {
-    print({.table = plan_table(cells)}, options.common);
+    print({.table = plan_table(published_cells(options.papers))}, options.common);
     return ExitStatus::done;
   }
   const std::vector<cost_models::Statement> statements = cost_models::load_statements(
       (std::filesystem::path(config_directory()) / "calibration" / "accuracy.csv").string());
-  const cost_models::Experiment experiment =
-      load_experiment(std::move(cells), options.common.jobs, context.log);
-  Progress progress(options.common, context.terminal);
-  cost_models::FitOptions fit_options;
-  fit_options.jobs = options.common.jobs;
-  const cost_models::Validation validation = cost_models::validate(
-      experiment, fit_options, [&](std::size_t done, std::size_t all, const std::string& what) {
-        progress.update(static_cast<double>(done) / static_cast<double>(all), what);
-      });
-  progress.finish();
+  Lab lab({.jobs = options.common.jobs, .observer = &context.log});
+  const lab::Validation answer = lab.validate(options.papers);
+  const cost_models::Experiment& experiment = answer.experiment;
+  const cost_models::Validation& validation = answer.figures;
   const nlohmann::ordered_json json = validation_json(experiment, validation);
   const Table not_run = not_run_table(experiment);
   const std::string counts = fmt::format(

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "lab/store/reference_image.h"
 #include "lab/store/trace_store.h"
 #include "pipeline/image/metrics.h"
 
@@ -18,16 +19,6 @@ class InternalError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
-
-struct ReferenceImage {
-  pipeline::Image image;
-  int samples = 0;
-  double wall_s = 0.0;
-  bool from_cache = false;
-};
-
-/// Ray-traces the view, or takes it from the cache.
-ReferenceImage make_reference(SceneView& scene, int samples, int jobs, const ProgressFunction& progress);
 
 struct PointResult {
   const algos::TechniqueChoice* technique = nullptr;

@@ -11,50 +11,9 @@
 namespace hwsim::lab {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-double dram_bytes(const StreamBytes& bytes) { return bytes.total_read() + bytes.total_write(); }
-
-Json pass_json(const PassTiming& pass, const PassWork& work) {
-  Json json;
-  json["name"] = pass.name;
-  json["kind"] = pass_kind_name(pass.kind);
-  json["time_ms"] = pass.time_ns / kNsPerMs;
-  json["limiter"] = unit_name(pass.limiter);
-  for (int u = 0; u < kUnitCount; ++u)
-    json["units"][std::string(unit_name(static_cast<Unit>(u)))] = pass.sol_ratio[static_cast<size_t>(u)];
-  for (int s = 0; s < kStreamCount; ++s) {
-    const auto i = static_cast<size_t>(s);
-    json["bytes"][std::string(stream_name(static_cast<Stream>(s)))] =
-        pass.dram_bytes.read[i] + pass.dram_bytes.write[i];
-  }
-  const PassCounters counters = total(work);
-  for (const auto& [info, place] : algos::counters())
-    json["counters"][std::string(info.id)] = values(counters)[place];
-  return json;
-}
-
-Json frame_json(const PointResult& point) {
-  const FrameTiming& timing = point.timing;
-  Json json;
-  json["time_ms"] = timing.time_ns / kNsPerMs;
-  json["interval_ms"] = nullptr;
-  if (timing.interval_ns)
-    json["interval_ms"] = {(*timing.interval_ns)[0] / kNsPerMs, (*timing.interval_ns)[1] / kNsPerMs};
-  json["support"] = support_name(timing.support);
-  json["memory_mib"] = static_cast<double>(point.emulation->trace.peak_memory_bytes) / kBytesPerMib;
-  json["allocated_mib"] = static_cast<double>(point.emulation->trace.allocated_memory_bytes) / kBytesPerMib;
-  json["dram_mb"] = dram_bytes(timing.dram_bytes) / kBytesPerMb;
-  json["shaded_samples"] = algos::shaded_samples(point.emulation->trace);
-  return json;
-}
-
-Json image_json(const PointResult& point) {
-  if (!point.image_error) return nullptr;
-  const pipeline::ImageError& error = *point.image_error;
-  return {{"psnr_db", error.psnr_db},         {"flip_mean", error.flip_mean}, {"rmse", error.rmse},
-          {"flip_median", error.flip_median}, {"flip_p99", error.flip_p99},   {"ssim", error.ssim}};
-}
+constexpr double kNsPerMs = 1e6;
+constexpr double kBytesPerMb = 1e6;
+constexpr double kBytesPerMib = 1024.0 * 1024.0;
 
 /// Units that did something, the largest share of time first.
 std::vector<size_t> units_by_share(const std::array<double, kUnitCount>& stack_ns) {
@@ -101,30 +60,6 @@ const PassTiming& slowest_pass(const FrameTiming& timing) {
                            [](const PassTiming& a, const PassTiming& b) { return a.time_ns < b.time_ns; });
 }
 
-Json result_json(const PointResult& point, const RunPlan& plan, const std::string& scene_name) {
-  Json json;
-  json["schema_version"] = kResultSchemaVersion;
-  json["scene"] = scene_name;
-  json["technique"] = algos::technique_text(*point.technique);
-  json["gpu"] = point.gpu->id;
-  json["engine"] = engine_name(plan.engine);
-  json["resolution"] = {plan.view.resolution.width_px, plan.view.resolution.height_px};
-  json["frame"] = frame_json(point);
-  json["passes"] = Json::array();
-  for (size_t i = 0; i < point.timing.passes.size(); ++i)
-    json["passes"].push_back(pass_json(point.timing.passes[i], point.emulation->trace.passes[i]));
-  json["image"] = image_json(point);
-  Json skipped = Json::object();
-  for (const auto& [name, count] : point.emulation->skipped) skipped[name] = count;
-  json["emulation"] = {
-      {"wall_s", point.emulation->wall_s}, {"from_cache", point.from_cache}, {"skipped", skipped}};
-  json["timing"] = {{"wall_s", point.timing_wall_s}};
-  for (const Diagnostic& warning : result_warnings(point)) json["warnings"].push_back(warning.message);
-  if (const auto& sampled = point.timing.sampling_interval_ns)
-    json["timing"]["sampling_interval_ms"] = {(*sampled)[0] / kNsPerMs, (*sampled)[1] / kNsPerMs};
-  return json;
-}
-
 std::vector<Diagnostic> result_warnings(const PointResult& point) {
   std::vector<Diagnostic> warnings = algos::frame_notes(*point.technique, point.emulation->trace);
   if (!draws_a_scene(point.emulation->trace)) return warnings;
@@ -133,27 +68,30 @@ std::vector<Diagnostic> result_warnings(const PointResult& point) {
   return warnings;
 }
 
-std::string headline_time(const FrameTiming& timing) {
-  std::string text = fmt::format("{:.3g} ms", timing.time_ns / kNsPerMs);
-  if (timing.interval_ns)
-    text += fmt::format(" [{:.3g}, {:.3g}]", (*timing.interval_ns)[0] / kNsPerMs,
-                        (*timing.interval_ns)[1] / kNsPerMs);
-  return text + " " + std::string(support_name(timing.support));
+std::string headline_time(const FrameResult& frame) {
+  std::string text = fmt::format("{:.3g} ms", frame.time_ms);
+  if (frame.interval_ms)
+    text += fmt::format(" [{:.3g}, {:.3g}]", (*frame.interval_ms)[0], (*frame.interval_ms)[1]);
+  return text + " " + frame.support;
 }
 
-std::string headline(const PointResult& point, const RunPlan& plan, const std::string& scene_name) {
-  std::string text = fmt::format(
-      "{}, {} on {} at {}x{}: {}\n", scene_name, algos::technique_text(*point.technique), point.gpu->id,
-      plan.view.resolution.width_px, plan.view.resolution.height_px, headline_time(point.timing));
-  if (!point.timing.passes.empty()) {
-    const PassTiming& slowest = slowest_pass(point.timing);
-    text += fmt::format("slowest pass: {}, {:.3g} ms, limited by {} ({} of its time)\n", slowest.name,
-                        slowest.time_ns / kNsPerMs, unit_name(slowest.limiter),
-                        share_text(slowest, 0).substr(unit_name(slowest.limiter).size() + 1));
-  }
-  if (point.image_error)
-    text += fmt::format("error of the image: FLIP {:.4f}, PSNR {:.2f} dB\n", point.image_error->flip_mean,
-                        point.image_error->psnr_db);
+double limiter_share_ratio(const PointResult& point) {
+  if (point.timing.passes.empty()) return 0.0;
+  const PassTiming& slowest = slowest_pass(point.timing);
+  if (slowest.time_ns <= 0.0) return 0.0;
+  return slowest.stack_ns[static_cast<size_t>(slowest.limiter)] / slowest.time_ns;
+}
+
+std::string headline(const Result& result, double limiter_share_ratio) {
+  std::string text =
+      fmt::format("{}, {} on {} at {}x{}: {}\n", result.scene, result.technique, result.gpu,
+                  result.resolution.width_px, result.resolution.height_px, headline_time(result.frame));
+  if (const PassResult* slowest = slowest_pass(result))
+    text += fmt::format("slowest pass: {}, {:.3g} ms, limited by {} ({:.0f} % of its time)\n", slowest->name,
+                        slowest->time_ms, slowest->limiter, 100.0 * limiter_share_ratio);
+  if (result.image)
+    text += fmt::format("error of the image: FLIP {:.4f}, PSNR {:.2f} dB\n", result.image->flip_mean,
+                        result.image->psnr_db);
   return text;
 }
 
@@ -246,48 +184,36 @@ Table counter_table(const PointResult& point) {
   return table;
 }
 
-std::vector<Cell> summary_row(const PointResult& point) {
-  const FrameTiming& timing = point.timing;
-  const auto error = [&](double pipeline::ImageError::*member, int decimals) -> Cell {
-    if (!point.image_error) return NotApplicable{};
-    return Real{(*point.image_error).*member, decimals};
-  };
-  const auto bound = [&](size_t i) -> Cell {
-    if (!timing.interval_ns) return NotApplicable{};
-    return Real{(*timing.interval_ns)[i] / kNsPerMs, 3};
-  };
-  const Cell limiter =
-      timing.passes.empty()
-          ? Cell{NotApplicable{}}
-          : Cell{fmt::format("{} in {}", unit_name(slowest_pass(timing).limiter), slowest_pass(timing).name)};
-  return {algos::technique_text(*point.technique),
-          point.gpu->id,
-          Real{timing.time_ns / kNsPerMs, 3},
-          bound(0),
-          bound(1),
-          std::string(support_name(timing.support)),
-          limiter,
-          Real{dram_bytes(timing.dram_bytes) / kBytesPerMb, 1},
-          Real{static_cast<double>(point.emulation->trace.peak_memory_bytes) / kBytesPerMib, 1},
-          algos::shaded_samples(point.emulation->trace),
-          error(&pipeline::ImageError::flip_mean, 4),
-          error(&pipeline::ImageError::psnr_db, 2)};
-}
-
-Table summary_table(std::vector<std::vector<Cell>> rows) {
-  return {{{"technique", "technique"},
-           {"gpu", "GPU"},
-           {"time_ms", "ms", true},
-           {"lo_ms", "lo", true},
-           {"hi_ms", "hi", true},
-           {"support", "support"},
-           {"limiter", "limiter of the slowest pass"},
-           {"dram_mb", "DRAM MB", true},
-           {"memory_mib", "memory MiB", true},
-           {"shaded_samples", "shaded samples", true},
-           {"flip_mean", "FLIP", true},
-           {"psnr_db", "PSNR dB", true}},
-          std::move(rows)};
+Table summary_table(const std::vector<Result>& results) {
+  Table table{{{"technique", "technique"},
+               {"gpu", "GPU"},
+               {"time_ms", "ms", true},
+               {"lo_ms", "lo", true},
+               {"hi_ms", "hi", true},
+               {"support", "support"},
+               {"limiter", "limiter of the slowest pass"},
+               {"dram_mb", "DRAM MB", true},
+               {"memory_mib", "memory MiB", true},
+               {"shaded_samples", "shaded samples", true},
+               {"flip_mean", "FLIP", true},
+               {"psnr_db", "PSNR dB", true}},
+              {}};
+  for (const Result& result : results) {
+    const FrameResult& frame = result.frame;
+    const auto bound = [&](size_t i) -> Cell {
+      return frame.interval_ms ? Cell{Real{(*frame.interval_ms)[i], 3}} : Cell{NotApplicable{}};
+    };
+    const auto error = [&](double pipeline::ImageError::*member, int decimals) -> Cell {
+      return result.image ? Cell{Real{(*result.image).*member, decimals}} : Cell{NotApplicable{}};
+    };
+    const PassResult* slowest = slowest_pass(result);
+    table.rows.push_back(
+        {result.technique, result.gpu, Real{frame.time_ms, 3}, bound(0), bound(1), frame.support,
+         slowest ? Cell{slowest->limiter + " in " + slowest->name} : Cell{NotApplicable{}},
+         Real{frame.dram_mb, 1}, Real{frame.memory_mib, 1}, frame.shaded_samples,
+         error(&pipeline::ImageError::flip_mean, 4), error(&pipeline::ImageError::psnr_db, 2)});
+  }
+  return table;
 }
 
 }  // namespace hwsim::lab

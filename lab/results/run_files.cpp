@@ -58,7 +58,7 @@ pipeline::Image heat_picture(const pipeline::Image& values, float full_scale) {
 void write_point_files(const std::string& folder, const PointResult& point, const RunPlan& plan,
                        const std::string& scene_name, const ReferenceImage* reference) {
   std::filesystem::create_directories(folder);
-  write_file(folder + "/result.json", result_json(point, plan, scene_name).dump(2) + "\n");
+  write_file(folder + "/result.json", to_json(make_result(point, plan, scene_name)).dump(2) + "\n");
   write_file(folder + "/passes.csv", to_csv(wide_pass_table(point)));
   write_file(folder + "/counters.csv", to_csv(counter_table(point)));
   write_file(folder + "/trace.json", trace_event_json(point));

@@ -1,3 +1,5 @@
+#include "lab/store/reference_image.h"
+
 #include <fmt/format.h>
 
 #include <chrono>
@@ -5,7 +7,6 @@
 
 #include "algos/base/reference_frame.h"
 #include "lab/base/files.h"
-#include "lab/point/simulate.h"
 #include "lab/store/cache.h"
 #include "pipeline/image/image_io.h"
 

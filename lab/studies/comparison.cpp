@@ -1,119 +1,167 @@
 #include "lab/studies/comparison.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "hwsim/base/units_of_measure.h"
-#include "lab/base/files.h"
-#include "lab/base/messages.h"
-#include "lab/results/results.h"
 
 namespace hwsim::lab {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr double kPercent = 100.0;
-
-Cell change_cell(double before, double after) {
-  const auto change = relative_change(before, after);
-  return change ? Cell{Real{*change * kPercent, 1}} : Cell{NotApplicable{}};
+const PassResult* find_pass(const Result& result, const std::string& name) {
+  const auto found = std::ranges::find(result.passes, name, &PassResult::name);
+  return found == result.passes.end() ? nullptr : &*found;
 }
 
-const Json* find_pass(const Json& result, const std::string& name) {
-  for (const Json& pass : result["passes"])
-    if (pass["name"] == name) return &pass;
-  return nullptr;
+template <class T>
+T value_of(const NamedValues<T>& values, const std::string& name) {
+  for (const auto& [key, value] : values)
+    if (key == name) return value;
+  return T{};
 }
 
-double time_ms(const Json* pass) { return pass ? (*pass)["time_ms"].get<double>() : 0.0; }
-
-double dram_mb(const Json* pass) {
+double dram_mb(const PassResult* pass) {
   double bytes = 0.0;
   if (pass)
-    for (const auto& [stream, value] : (*pass)["bytes"].items()) bytes += value.get<double>();
+    for (const auto& [stream, value] : pass->bytes) bytes += value;
   return bytes / kBytesPerMb;
-}
-
-Cell limiter_cell(const Json* pass) {
-  return pass ? Cell{(*pass)["limiter"].get<std::string>()} : Cell{NotApplicable{}};
 }
 
 /// Names of all passes of two results: in the order of the first, those that only the second has where they
 /// stand there.
-std::vector<std::string> pass_names(const Json& before, const Json& after) {
+std::vector<std::string> pass_names(const Result& before, const Result& after) {
   std::vector<std::string> names;
-  for (const Json& pass : before["passes"]) names.push_back(pass["name"]);
+  for (const PassResult& pass : before.passes) names.push_back(pass.name);
   auto place = names.begin();
-  for (const Json& pass : after["passes"]) {
-    const std::string name = pass["name"];
-    const auto known = std::find(names.begin(), names.end(), name);
-    place = (known != names.end() ? known : names.insert(place, name)) + 1;
+  for (const PassResult& pass : after.passes) {
+    const auto known = std::find(names.begin(), names.end(), pass.name);
+    place = (known != names.end() ? known : names.insert(place, pass.name)) + 1;
   }
   return names;
 }
 
-std::string slowest_limiter(const Json& result) {
-  const Json* slowest = nullptr;
-  for (const Json& pass : result["passes"])
-    if (time_ms(&pass) > time_ms(slowest)) slowest = &pass;
-  return slowest ? fmt::format("{} in {}", (*slowest)["limiter"].get<std::string>(),
-                               (*slowest)["name"].get<std::string>())
-                 : "n/a";
+PassDifference pass_difference(const std::string& name, const PassResult* before, const PassResult* after) {
+  const PassResult nothing;
+  const PassResult& old = before ? *before : nothing;
+  const PassResult& now = after ? *after : nothing;
+  PassDifference difference{
+      .name = name, .time_ms = {old.time_ms, now.time_ms}, .dram_mb = {dram_mb(before), dram_mb(after)}};
+  if (before) difference.limiter.before = old.limiter;
+  if (after) difference.limiter.after = now.limiter;
+  for (const auto& [stream, unused] : (after ? now : old).bytes)
+    difference.bytes.emplace_back(stream,
+                                  Change<double>{value_of(old.bytes, stream), value_of(now.bytes, stream)});
+  for (const auto& [id, unused] : (after ? now : old).counters)
+    if (const Change change{value_of(old.counters, id), value_of(now.counters, id)};
+        change.before != change.after)
+      difference.counters.emplace_back(id, change);
+  return difference;
 }
 
-/// Calls back for each counter of two passes that differs.
-template <class Function>
-void for_changed_counters(const Json* before, const Json* after, const Function& call) {
-  const auto value = [](const Json* pass, const std::string& id) {
-    if (!pass) return std::uint64_t{0};
-    const auto found = (*pass)["counters"].find(id);
-    return found == (*pass)["counters"].end() ? std::uint64_t{0} : found->template get<std::uint64_t>();
-  };
-  for (const auto& [id, unused] : (*(after ? after : before))["counters"].items())
-    if (value(before, id) != value(after, id)) call(id, value(before, id), value(after, id));
+Difference difference_of(const Result& base, const LabeledResult& labeled) {
+  const Result& result = labeled.result;
+  const FrameResult &old = base.frame, &now = result.frame;
+  Difference difference{
+      .label = labeled.label,
+      .scene = result.scene,
+      .technique = result.technique,
+      .gpu = result.gpu,
+      .time_ms = {old.time_ms, now.time_ms},
+      .memory_mib = {old.memory_mib, now.memory_mib},
+      .dram_mb = {old.dram_mb, now.dram_mb},
+      .shaded_samples = {static_cast<double>(old.shaded_samples), static_cast<double>(now.shaded_samples)}};
+  for (const std::string& name : pass_names(base, result))
+    difference.passes.push_back(pass_difference(name, find_pass(base, name), find_pass(result, name)));
+  return difference;
 }
 
-Json pair_json(double before, double after) {
-  const auto change = relative_change(before, after);
-  return {{"before", before}, {"after", after}, {"delta_ratio", change ? Json(*change) : Json(nullptr)}};
+Json to_json(const Change<double>& change) {
+  const auto ratio = relative_change(change.before, change.after);
+  return {{"before", change.before},
+          {"after", change.after},
+          {"delta_ratio", ratio ? Json(*ratio) : Json(nullptr)}};
 }
 
-Json pass_json(const std::string& name, const Json* before, const Json* after) {
-  Json json = {{"name", name}, {"time_ms", pair_json(time_ms(before), time_ms(after))}};
-  json["limiter"] = {{"before", before ? (*before)["limiter"] : Json(nullptr)},
-                     {"after", after ? (*after)["limiter"] : Json(nullptr)}};
-  json["dram_mb"] = pair_json(dram_mb(before), dram_mb(after));
-  json["bytes"] = Json::object();
-  for (const auto& [stream, unused] : (*(after ? after : before))["bytes"].items())
-    json["bytes"][stream] = pair_json(before ? (*before)["bytes"].value(stream, 0.0) : 0.0,
-                                      after ? (*after)["bytes"].value(stream, 0.0) : 0.0);
-  json["counters"] = Json::object();
-  for_changed_counters(before, after, [&](const std::string& id, std::uint64_t old, std::uint64_t now) {
-    json["counters"][id] = {{"before", old}, {"after", now}};
-  });
+Json to_json(const Change<std::uint64_t>& change) {
+  return {{"before", change.before}, {"after", change.after}};
+}
+
+Json to_json(const Change<std::optional<std::string>>& change) {
+  const auto side = [](const std::optional<std::string>& name) { return name ? Json(*name) : Json(nullptr); };
+  return {{"before", side(change.before)}, {"after", side(change.after)}};
+}
+
+template <class T>
+Json to_json(const NamedValues<Change<T>>& changes) {
+  Json json = Json::object();
+  for (const auto& [name, change] : changes) json[name] = to_json(change);
   return json;
 }
 
-ComparedResult read_result(const fs::path& file) try {
-  ComparedResult compared{file.parent_path().string(), Json::parse(read_file(file.string()))};
-  const Json& result = compared.result;
-  for (const char* key : {"scene", "technique", "gpu"}) result.at(key).get<std::string>();
-  for (const char* key : {"time_ms", "memory_mib", "dram_mb", "shaded_samples"})
-    result.at("frame").at(key).get<double>();
-  for (const Json& pass : result.at("passes")) {
-    for (const char* key : {"name", "limiter"}) pass.at(key).get<std::string>();
-    pass.at("time_ms").get<double>();
-    for (const char* key : {"bytes", "counters"})
-      for (const auto& [name, value] : pass.at(key).items()) value.get<double>();
-  }
-  return compared;
-} catch (const Json::exception& error) {
-  fail("U020", "`" + file.string() + "` is no result of `hwsim run`: " + error.what());
+Json to_json(const PassDifference& pass) {
+  return {{"name", pass.name},
+          {"time_ms", to_json(pass.time_ms)},
+          {"limiter", to_json(pass.limiter)},
+          {"dram_mb", to_json(pass.dram_mb)},
+          {"bytes", to_json(pass.bytes)},
+          {"counters", to_json(pass.counters)}};
+}
+
+Json to_json(const Difference& difference) {
+  Json json = {{"label", difference.label},
+               {"scene", difference.scene},
+               {"technique", difference.technique},
+               {"gpu", difference.gpu},
+               {"frame",
+                {{"time_ms", to_json(difference.time_ms)},
+                 {"memory_mib", to_json(difference.memory_mib)},
+                 {"dram_mb", to_json(difference.dram_mb)},
+                 {"shaded_samples", to_json(difference.shaded_samples)}}},
+               {"passes", Json::array()}};
+  for (const PassDifference& pass : difference.passes) json["passes"].push_back(to_json(pass));
+  return json;
+}
+
+template <class T>
+Change<T> change_from_json(const Json& json) {
+  return {json.at("before").get<T>(), json.at("after").get<T>()};
+}
+
+template <class T>
+NamedValues<Change<T>> changes_from_json(const Json& json) {
+  NamedValues<Change<T>> changes;
+  for (const auto& [name, change] : json.items()) changes.emplace_back(name, change_from_json<T>(change));
+  return changes;
+}
+
+std::optional<std::string> side_from_json(const Json& json) {
+  return json.is_null() ? std::nullopt : std::optional(json.get<std::string>());
+}
+
+PassDifference pass_difference_from_json(const Json& json) {
+  const Json& limiter = json.at("limiter");
+  return {.name = json.at("name").get<std::string>(),
+          .time_ms = change_from_json<double>(json.at("time_ms")),
+          .dram_mb = change_from_json<double>(json.at("dram_mb")),
+          .limiter = {side_from_json(limiter.at("before")), side_from_json(limiter.at("after"))},
+          .bytes = changes_from_json<double>(json.at("bytes")),
+          .counters = changes_from_json<std::uint64_t>(json.at("counters"))};
+}
+
+Difference difference_from_json(const Json& json) {
+  const Json& frame = json.at("frame");
+  Difference difference{.label = json.at("label").get<std::string>(),
+                        .scene = json.at("scene").get<std::string>(),
+                        .technique = json.at("technique").get<std::string>(),
+                        .gpu = json.at("gpu").get<std::string>(),
+                        .time_ms = change_from_json<double>(frame.at("time_ms")),
+                        .memory_mib = change_from_json<double>(frame.at("memory_mib")),
+                        .dram_mb = change_from_json<double>(frame.at("dram_mb")),
+                        .shaded_samples = change_from_json<double>(frame.at("shaded_samples"))};
+  for (const Json& pass : json.at("passes")) difference.passes.push_back(pass_difference_from_json(pass));
+  return difference;
 }
 
 }  // namespace
@@ -124,115 +172,27 @@ std::optional<double> relative_change(double before, double after) {
   return (after - before) / std::abs(before);
 }
 
-Table frame_comparison(const std::vector<ComparedResult>& results) {
-  Table table{{{"result", "result"},
-               {"technique", "technique"},
-               {"gpu", "GPU"},
-               {"time_ms", "ms", true},
-               {"time_change_pct", "change %", true},
-               {"limiter", "limiter of the slowest pass"},
-               {"dram_mb", "DRAM MB", true},
-               {"dram_change_pct", "change %", true},
-               {"memory_mib", "memory MiB", true},
-               {"shaded_samples", "shaded samples", true}},
-              {}};
-  const Json& base = results.front().result["frame"];
-  for (const ComparedResult& compared : results) {
-    const Json& frame = compared.result["frame"];
-    const auto number = [&](const char* key) { return frame[key].get<double>(); };
-    table.rows.push_back({compared.label, compared.result["technique"].get<std::string>(),
-                          compared.result["gpu"].get<std::string>(), Real{number("time_ms"), 4},
-                          change_cell(base["time_ms"], number("time_ms")), slowest_limiter(compared.result),
-                          Real{number("dram_mb"), 1}, change_cell(base["dram_mb"], number("dram_mb")),
-                          Real{number("memory_mib"), 1}, frame["shaded_samples"].get<std::uint64_t>()});
-  }
-  return table;
+Comparison compare(const std::vector<LabeledResult>& results) {
+  Comparison comparison{results.front().label, results.front().result, {}};
+  for (std::size_t i = 1; i < results.size(); ++i)
+    comparison.differences.push_back(difference_of(comparison.baseline, results[i]));
+  return comparison;
 }
 
-Table pass_comparison(const std::vector<ComparedResult>& results) {
-  Table table{{{"result", "result"},
-               {"pass", "pass"},
-               {"before_ms", "before ms", true},
-               {"after_ms", "after ms", true},
-               {"time_change_pct", "change %", true},
-               {"limiter_before", "limiter before"},
-               {"limiter_after", "after"},
-               {"dram_before_mb", "DRAM before MB", true},
-               {"dram_after_mb", "after MB", true},
-               {"dram_change_pct", "change %", true}},
-              {}};
-  const Json& base = results.front().result;
-  for (size_t i = 1; i < results.size(); ++i)
-    for (const std::string& name : pass_names(base, results[i].result)) {
-      const Json* before = find_pass(base, name);
-      const Json* after = find_pass(results[i].result, name);
-      table.rows.push_back({results[i].label, name, before ? Cell{Real{time_ms(before), 4}} : NotApplicable{},
-                            after ? Cell{Real{time_ms(after), 4}} : NotApplicable{},
-                            change_cell(time_ms(before), time_ms(after)), limiter_cell(before),
-                            limiter_cell(after), Real{dram_mb(before), 2}, Real{dram_mb(after), 2},
-                            change_cell(dram_mb(before), dram_mb(after))});
-    }
-  return table;
-}
-
-Table counter_comparison(const std::vector<ComparedResult>& results) {
-  Table table{{{"result", "result"},
-               {"pass", "pass"},
-               {"counter", "counter"},
-               {"before", "before", true},
-               {"after", "after", true},
-               {"change_pct", "change %", true}},
-              {}};
-  const Json& base = results.front().result;
-  for (size_t i = 1; i < results.size(); ++i)
-    for (const std::string& name : pass_names(base, results[i].result))
-      for_changed_counters(
-          find_pass(base, name), find_pass(results[i].result, name),
-          [&](const std::string& id, std::uint64_t before, std::uint64_t after) {
-            table.rows.push_back({results[i].label, name, id, before, after,
-                                  change_cell(static_cast<double>(before), static_cast<double>(after))});
-          });
-  return table;
-}
-
-Json comparison_json(const std::vector<ComparedResult>& results) {
-  const Json& base = results.front().result;
+Json to_json(const Comparison& comparison) {
   Json json = {{"schema_version", kResultSchemaVersion},
-               {"baseline", {{"label", results.front().label}, {"result", base}}},
+               {"baseline", {{"label", comparison.baseline_label}, {"result", to_json(comparison.baseline)}}},
                {"results", Json::array()}};
-  for (size_t i = 1; i < results.size(); ++i) {
-    const Json& result = results[i].result;
-    Json entry = {{"label", results[i].label},
-                  {"scene", result["scene"]},
-                  {"technique", result["technique"]},
-                  {"gpu", result["gpu"]}};
-    for (const char* key : {"time_ms", "memory_mib", "dram_mb", "shaded_samples"})
-      entry["frame"][key] = pair_json(base["frame"][key], result["frame"][key]);
-    entry["passes"] = Json::array();
-    for (const std::string& name : pass_names(base, result))
-      entry["passes"].push_back(pass_json(name, find_pass(base, name), find_pass(result, name)));
-    json["results"].push_back(std::move(entry));
-  }
+  for (const Difference& difference : comparison.differences) json["results"].push_back(to_json(difference));
   return json;
 }
 
-std::vector<ComparedResult> read_results(const std::string& path) {
-  std::error_code error;
-  if (!fs::is_directory(path, error)) return {read_result(path)};
-  if (fs::exists(fs::path(path) / "result.json", error)) {
-    ComparedResult one = read_result(fs::path(path) / "result.json");
-    one.label = path;
-    return {one};
-  }
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path, error))
-    if (fs::exists(entry.path() / "result.json", error)) files.push_back(entry.path() / "result.json");
-  if (files.empty())
-    fail("U020", "`" + path + "` holds no result.json", "", "give a folder that `hwsim run` wrote");
-  std::sort(files.begin(), files.end());
-  std::vector<ComparedResult> results;
-  for (const fs::path& file : files) results.push_back(read_result(file));
-  return results;
+Comparison comparison_from_json(const Json& json) {
+  const Json& baseline = json.at("baseline");
+  Comparison comparison{baseline.at("label").get<std::string>(), result_from_json(baseline.at("result")), {}};
+  for (const Json& difference : json.at("results"))
+    comparison.differences.push_back(difference_from_json(difference));
+  return comparison;
 }
 
 }  // namespace hwsim::lab

@@ -1,0 +1,175 @@
+#include "lab/lab.h"
+
+#include <fmt/format.h>
+
+#include "lab/base/messages.h"
+#include "lab/studies/published_runs.h"
+
+namespace hwsim::lab {
+namespace {
+
+/// Tells both; only the first one may take a failure.
+class Fork : public RunSink {
+ public:
+  Fork(RunSink& first, RunSink* second) : first_(first), second_(second) {}
+  void begin(const RunContext& run) override {
+    first_.begin(run);
+    if (second_) second_->begin(run);
+  }
+  void point(const PointResult& point, const RunContext& run) override {
+    first_.point(point, run);
+    if (second_) second_->point(point, run);
+  }
+  void failed(const algos::TechniqueChoice& technique, const GpuConfig& gpu,
+              const InputError& error) override {
+    first_.failed(technique, gpu, error);
+  }
+
+ private:
+  RunSink& first_;
+  RunSink* second_;
+};
+
+class ResultSink : public RunSink {
+ public:
+  void begin(const RunContext& run) override {
+    run_.scene = run.scene.name;
+    run_.resolution = run.plan.view.resolution;
+  }
+  void point(const PointResult& point, const RunContext& run) override {
+    run_.results.push_back(make_result(point, run.plan, run.scene.name));
+  }
+  Run take() { return std::move(run_); }
+
+ private:
+  Run run_;
+};
+
+class ExplanationSink : public RunSink {
+ public:
+  void point(const PointResult& point, const RunContext& run) override {
+    explanations.push_back(lab::explain(point, run.plan, run.scene.name));
+  }
+  std::vector<Explanation> explanations;
+};
+
+/// Neither images nor what they would be compared with.
+RunPlan numbers_only(RunPlan plan) {
+  plan.images = false;
+  plan.reference_samples = 0;
+  return plan;
+}
+
+std::string label_of(const Result& result, const std::string& variation, bool several) {
+  if (!several) return variation;
+  const std::string point = result.technique + " on " + result.gpu;
+  return variation.empty() ? point : point + " " + variation;
+}
+
+}  // namespace
+
+Lab::Lab(const LabOptions& options)
+    : silence_(std::make_unique<Observer>()),
+      session_(std::make_unique<Session>(TraceStore::Options{.jobs = options.jobs, .disk = options.use_cache},
+                                         options.observer ? *options.observer : *silence_)) {}
+
+Lab::~Lab() = default;
+Lab::Lab(Lab&&) noexcept = default;
+Lab& Lab::operator=(Lab&&) noexcept = default;
+
+Run Lab::run(const Request& request, RunSink* sink) {
+  return run(make_plan(request, session_->files()), sink);
+}
+
+Run Lab::run(const RunPlan& plan, RunSink* sink) {
+  ResultSink results;
+  Fork fork(results, sink);
+  StageProgress progress(session_->observer(), Session::stages(plan));
+  session_->run(plan, fork, progress);
+  return results.take();
+}
+
+Comparison Lab::compare(const Request& request, const std::vector<Variation>& variations) {
+  std::vector<RunPlan> plans = plans_of(request, variations, session_->files());
+  const std::size_t points = plans.front().techniques.size() * plans.front().gpus.size();
+  if (points * plans.size() < 2)
+    fail_usage("U002", "there is nothing to compare the result with", "",
+               "two results, two techniques or GPUs, --set, --overlay, --vary or --what-if");
+  session_->observer().say(
+      fmt::format("plan: {}, {} results to compare", request.view.scene, points * plans.size()));
+  StageProgress progress(session_->observer(), points * plans.size());
+  std::vector<LabeledResult> labeled;
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    ResultSink sink;
+    session_->run(numbers_only(plans[i]), sink, progress);
+    const std::string label = i > 0 ? variations[i - 1].label : points == 1 ? "baseline" : "";
+    for (Result& result : sink.take().results) {
+      std::string name = label_of(result, label, points > 1);
+      labeled.push_back({std::move(name), std::move(result)});
+    }
+  }
+  return lab::compare(labeled);
+}
+
+Ranking Lab::rank(const Request& request, const std::string& budget, RunSink* sink,
+                  pipeline::Image* contact_sheet) {
+  return rank(make_plan(request, session_->files()), budget, sink, contact_sheet);
+}
+
+Ranking Lab::rank(const RunPlan& given, const std::string& budget, RunSink* sink,
+                  pipeline::Image* contact_sheet) {
+  const RunPlan plan = ranking_plan(given);
+  RankingSink ranking(budget);
+  Fork fork(ranking, sink);
+  StageProgress progress(session_->observer(), Session::stages(plan));
+  session_->run(plan, fork, progress);
+  if (contact_sheet && plan.images) *contact_sheet = ranking.sheet();
+  return ranking.ranking();
+}
+
+std::vector<Explanation> Lab::explain(const Request& request) {
+  return explain(make_plan(request, session_->files()));
+}
+
+std::vector<Explanation> Lab::explain(const RunPlan& given) {
+  const RunPlan plan = numbers_only(given);
+  ExplanationSink sink;
+  StageProgress progress(session_->observer(), Session::stages(plan));
+  session_->run(plan, sink, progress);
+  return std::move(sink.explanations);
+}
+
+std::vector<PlannedPoint> Lab::plan_sweep(const Request& request,
+                                          const std::vector<std::vector<Assignment>>& settings) {
+  return lab::plan_sweep(request, settings, *session_);
+}
+
+SweepSummary Lab::sweep(const std::vector<PlannedPoint>& points, const SweepJob& job) {
+  return run_sweep(points, job, *session_);
+}
+
+Reproduction Lab::reproduce(const std::string& paper) {
+  const auto calibration = session_->files().calibration();
+  const cost_models::Experiment experiment =
+      load_experiment(published_cells({paper}), session_->jobs(), session_->observer());
+  return lab::reproduce(paper, experiment, calibration.get(), session_->jobs(), session_->observer());
+}
+
+Validation Lab::validate(const std::vector<std::string>& papers) {
+  cost_models::FitOptions options;
+  options.jobs = session_->jobs();
+  return lab::validate(load_experiment(published_cells(papers), options.jobs, session_->observer()), options,
+                       session_->observer());
+}
+
+Validation Lab::fit(const std::vector<std::string>& papers, int starts) {
+  cost_models::FitOptions options;
+  options.jobs = session_->jobs();
+  options.starts = starts;
+  cost_models::Experiment experiment =
+      load_experiment(published_cells(papers), options.jobs, session_->observer());
+  cost_models::check_parameter_count(experiment, cost_models::fitted_cells(experiment));
+  return lab::validate(std::move(experiment), options, session_->observer());
+}
+
+}  // namespace hwsim::lab

@@ -1,0 +1,74 @@
+#pragma once
+// The whole application as one class: a program asks a lab, and gets answers as plain data. A lab keeps the
+// scenes, traces and references that it has loaded, so that a second question costs less than the first.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lab/point/run_sink.h"
+#include "lab/results/result.h"
+#include "lab/studies/comparison.h"
+#include "lab/studies/explanation.h"
+#include "lab/studies/ranking.h"
+#include "lab/studies/reproduction.h"
+#include "lab/studies/sweep.h"
+#include "lab/studies/validation.h"
+#include "lab/studies/variation.h"
+
+namespace hwsim::lab {
+
+struct LabOptions {
+  int jobs = 1;                  ///< threads
+  bool use_cache = true;         ///< false: traces are neither read from the disk nor kept there
+  Observer* observer = nullptr;  ///< hears of progress, notes and warnings; outlives the lab; none: silence
+};
+
+/// Every function throws InputError for a mistake in what was asked, before anything is drawn where it can be
+/// told by then, and InternalError when hwsim broke one of its own laws. Not for several threads at once.
+class Lab {
+ public:
+  explicit Lab(const LabOptions& options = {});
+  ~Lab();
+  Lab(Lab&&) noexcept;
+  Lab& operator=(Lab&&) noexcept;
+
+  /// Each technique on each GPU. `sink` is given every point with its images while it comes.
+  Run run(const Request& request, RunSink* sink = nullptr);
+  Run run(const RunPlan& plan, RunSink* sink = nullptr);
+
+  /// The request against each variation of it, each technique and each GPU; there must be two results at
+  /// least.
+  Comparison compare(const Request& request, const std::vector<Variation>& variations = {});
+
+  /// The request's techniques on its GPU, with `none` among them, under a budget ("aa_ms<=1.5,
+  /// extra_mib<=192"; empty: none). `contact_sheet` receives crops where the images err most.
+  Ranking rank(const Request& request, const std::string& budget = {}, RunSink* sink = nullptr,
+               pipeline::Image* contact_sheet = nullptr);
+  Ranking rank(const RunPlan& plan, const std::string& budget = {}, RunSink* sink = nullptr,
+               pipeline::Image* contact_sheet = nullptr);
+
+  /// Why each technique takes its time on each GPU.
+  std::vector<Explanation> explain(const Request& request);
+  std::vector<Explanation> explain(const RunPlan& plan);
+
+  /// Every technique on every GPU with each list of settings, into a database. Points stay valid as long as
+  /// the lab.
+  std::vector<PlannedPoint> plan_sweep(const Request& request,
+                                       const std::vector<std::vector<Assignment>>& settings);
+  SweepSummary sweep(const std::vector<PlannedPoint>& points, const SweepJob& job);
+
+  /// The tables of a paper, published beside predicted.
+  Reproduction reproduce(const std::string& paper);
+
+  /// Errors on published times that the fit did not see; all papers, or those named.
+  Validation validate(const std::vector<std::string>& papers = {});
+  /// The same from several random starts, for write_calibration. Throws InputError M004 and M005 when there
+  /// are more parameters than the published times can tell.
+  Validation fit(const std::vector<std::string>& papers = {}, int starts = 10);
+
+ private:
+  std::unique_ptr<Observer> silence_;
+  std::unique_ptr<Session> session_;
+};
+
+}  // namespace hwsim::lab

@@ -1,0 +1,58 @@
+#include "lab/point/session.h"
+
+namespace hwsim::lab {
+
+std::string point_name(const algos::TechniqueChoice& technique, const GpuConfig& gpu) {
+  return algos::technique_text(technique) + " on " + gpu.id;
+}
+
+SceneView& Session::scene(const View& view) {
+  for (const auto& scene : scenes_)
+    if (scene->plan() == view) return *scene;
+  scenes_.push_back(std::make_unique<SceneView>(view, observer_));
+  return *scenes_.back();
+}
+
+const ReferenceImage& Session::reference(SceneView& scene, int samples, const ProgressFunction& progress) {
+  for (const auto& kept : references_)
+    if (kept->scene == &scene && kept->samples == samples) return kept->image;
+  references_.push_back(std::make_unique<KeptReference>(
+      KeptReference{&scene, samples, make_reference(scene, samples, options_.jobs, progress)}));
+  return references_.back()->image;
+}
+
+std::size_t Session::stages(const RunPlan& plan) {
+  return plan.techniques.size() * plan.gpus.size() + (plan.reference_samples > 0 ? 1 : 0);
+}
+
+void Session::run(const RunPlan& given, RunSink& sink, StageProgress& progress) {
+  RunPlan plan = given;
+  SceneView& scene = this->scene(plan.view);
+  plan.view.resolution = scene.plan().resolution;
+  const ReferenceImage* reference = nullptr;
+  if (plan.reference_samples > 0) {
+    reference = &this->reference(scene, plan.reference_samples,
+                                 [&](double done, const std::string& what) { progress.update(done, what); });
+    progress.next("reference");
+  }
+  const RunContext run{plan, scene.summary(), reference};
+  sink.begin(run);
+  Simulator simulator(plan, scene, reference, traces_);
+  for (const algos::TechniqueChoice& technique : plan.techniques)
+    for (const GpuConfig& gpu : plan.gpus) {
+      const std::string name = point_name(technique, gpu);
+      progress.update(0.0, name);
+      std::optional<PointResult> point;
+      try {
+        point = simulator.run(technique, gpu, [&](double done, const std::string& pass) {
+          progress.update(done, name + ": " + pass);
+        });
+      } catch (const InputError& error) {
+        sink.failed(technique, gpu, error);
+      }
+      if (point) sink.point(*point, run);
+      progress.next(name);
+    }
+}
+
+}  // namespace hwsim::lab

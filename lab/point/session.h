@@ -1,0 +1,56 @@
+#pragma once
+// What the points of all studies share, loaded once and kept as long as the session lives: scenes as views
+// look at them, work traces, references, GPU files and
+// the calibration.
+#include <memory>
+#include <vector>
+
+#include "lab/base/stage_progress.h"
+#include "lab/catalog/config_files.h"
+#include "lab/point/run_sink.h"
+
+namespace hwsim::lab {
+
+class Session {
+ public:
+  /// `observer` must outlive the session.
+  Session(const TraceStore::Options& options, Observer& observer)
+      : options_(options), observer_(observer), traces_(options, observer) {}
+
+  Observer& observer() const { return observer_; }
+  int jobs() const { return options_.jobs; }
+  TraceStore& traces() { return traces_; }
+  ConfigFiles& files() { return files_; }
+
+  /// Valid as long as the session. Throws InputError where the scene cannot be read.
+  SceneView& scene(const View& view);
+
+  /// Ray-traced at the first call; valid as long as the session.
+  const ReferenceImage& reference(SceneView& scene, int samples, const ProgressFunction& progress);
+
+  /// Runs every technique of the plan on every GPU, in this order. Throws InputError, and InternalError when
+  /// an invariant is violated.
+  void run(const RunPlan& plan, RunSink& sink, StageProgress& progress);
+
+  /// The stages of run(): the points, and the reference where there is one.
+  static std::size_t stages(const RunPlan& plan);
+
+ private:
+  struct KeptReference {
+    const SceneView* scene = nullptr;
+    int samples = 0;
+    ReferenceImage image;
+  };
+
+  TraceStore::Options options_;
+  Observer& observer_;
+  ConfigFiles files_;
+  TraceStore traces_;
+  std::vector<std::unique_ptr<SceneView>> scenes_;
+  std::vector<std::unique_ptr<KeptReference>> references_;
+};
+
+/// "msaa4x on gtx980".
+std::string point_name(const algos::TechniqueChoice& technique, const GpuConfig& gpu);
+
+}  // namespace hwsim::lab

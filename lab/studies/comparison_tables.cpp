@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+
+#include "lab/studies/comparison.h"
+
+namespace hwsim::lab {
+namespace {
+
+constexpr double kPercent = 100.0;
+
+Cell change_cell(double before, double after) {
+  const auto change = relative_change(before, after);
+  return change ? Cell{Real{*change * kPercent, 1}} : Cell{NotApplicable{}};
+}
+
+Cell change_cell(const Change<double>& change) { return change_cell(change.before, change.after); }
+
+Cell limiter_cell(const std::optional<std::string>& limiter) {
+  return limiter ? Cell{*limiter} : Cell{NotApplicable{}};
+}
+
+Cell time_cell(double time_ms, const std::optional<std::string>& limiter) {
+  return limiter ? Cell{Real{time_ms, 4}} : Cell{NotApplicable{}};
+}
+
+std::string slowest_limiter(const Result& result) {
+  const PassResult* slowest = slowest_pass(result);
+  return slowest && slowest->time_ms > 0.0 ? fmt::format("{} in {}", slowest->limiter, slowest->name) : "n/a";
+}
+
+std::string slowest_limiter(const Difference& difference) {
+  const PassDifference* slowest = nullptr;
+  for (const PassDifference& pass : difference.passes)
+    if (pass.limiter.after && pass.time_ms.after > (slowest ? slowest->time_ms.after : 0.0)) slowest = &pass;
+  return slowest ? fmt::format("{} in {}", *slowest->limiter.after, slowest->name) : "n/a";
+}
+
+}  // namespace
+
+Table frame_comparison(const Comparison& comparison) {
+  Table table{{{"result", "result"},
+               {"technique", "technique"},
+               {"gpu", "GPU"},
+               {"time_ms", "ms", true},
+               {"time_change_pct", "change %", true},
+               {"limiter", "limiter of the slowest pass"},
+               {"dram_mb", "DRAM MB", true},
+               {"dram_change_pct", "change %", true},
+               {"memory_mib", "memory MiB", true},
+               {"shaded_samples", "shaded samples", true}},
+              {}};
+  const Result& base = comparison.baseline;
+  table.rows.push_back({comparison.baseline_label, base.technique, base.gpu, Real{base.frame.time_ms, 4},
+                        Real{0.0, 1}, slowest_limiter(base), Real{base.frame.dram_mb, 1}, Real{0.0, 1},
+                        Real{base.frame.memory_mib, 1}, base.frame.shaded_samples});
+  for (const Difference& d : comparison.differences)
+    table.rows.push_back({d.label, d.technique, d.gpu, Real{d.time_ms.after, 4}, change_cell(d.time_ms),
+                          slowest_limiter(d), Real{d.dram_mb.after, 1}, change_cell(d.dram_mb),
+                          Real{d.memory_mib.after, 1}, static_cast<std::uint64_t>(d.shaded_samples.after)});
+  return table;
+}
+
+Table pass_comparison(const Comparison& comparison) {
+  Table table{{{"result", "result"},
+               {"pass", "pass"},
+               {"before_ms", "before ms", true},
+               {"after_ms", "after ms", true},
+               {"time_change_pct", "change %", true},
+               {"limiter_before", "limiter before"},
+               {"limiter_after", "after"},
+               {"dram_before_mb", "DRAM before MB", true},
+               {"dram_after_mb", "after MB", true},
+               {"dram_change_pct", "change %", true}},
+              {}};
+  for (const Difference& difference : comparison.differences)
+    for (const PassDifference& pass : difference.passes)
+      table.rows.push_back({difference.label, pass.name, time_cell(pass.time_ms.before, pass.limiter.before),
+                            time_cell(pass.time_ms.after, pass.limiter.after), change_cell(pass.time_ms),
+                            limiter_cell(pass.limiter.before), limiter_cell(pass.limiter.after),
+                            Real{pass.dram_mb.before, 2}, Real{pass.dram_mb.after, 2},
+                            change_cell(pass.dram_mb)});
+  return table;
+}
+
+Table counter_comparison(const Comparison& comparison) {
+  Table table{{{"result", "result"},
+               {"pass", "pass"},
+               {"counter", "counter"},
+               {"before", "before", true},
+               {"after", "after", true},
+               {"change_pct", "change %", true}},
+              {}};
+  for (const Difference& difference : comparison.differences)
+    for (const PassDifference& pass : difference.passes)
+      for (const auto& [id, change] : pass.counters)
+        table.rows.push_back(
+            {difference.label, pass.name, id, change.before, change.after,
+             change_cell(static_cast<double>(change.before), static_cast<double>(change.after))});
+  return table;
+}
+
+}  // namespace hwsim::lab

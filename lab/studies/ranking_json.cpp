@@ -1,0 +1,104 @@
+#include "lab/results/result.h"
+#include "lab/studies/ranking.h"
+
+namespace hwsim::lab {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// 0 where a technique that cannot run has no number.
+double number(const Json& row, const char* key) {
+  const Json& value = row.at(key);
+  return value.is_null() ? 0.0 : value.get<double>();
+}
+
+std::string text(const Json& row, const char* key) {
+  const Json& value = row.at(key);
+  return value.is_null() ? std::string() : value.get<std::string>();
+}
+
+RankedTechnique technique_from_json(const Json& row) {
+  RankedTechnique technique{.technique = text(row, "technique"),
+                            .verdict = text(row, "verdict"),
+                            .pareto = text(row, "pareto") == "yes",
+                            .frame_ms = number(row, "frame_ms"),
+                            .support = text(row, "support"),
+                            .aa_ms = number(row, "aa_ms"),
+                            .extra_mib = number(row, "extra_mib"),
+                            .dram_mb = number(row, "dram_mb"),
+                            .flip_mean = number(row, "flip_mean"),
+                            .psnr_db = number(row, "psnr_db"),
+                            .reason = text(row, "reason")};
+  if (!row.at("lo_ms").is_null())
+    technique.interval_ms = {row.at("lo_ms").get<double>(), row.at("hi_ms").get<double>()};
+  if (!row.at("shaded_samples").is_null())
+    technique.shaded_samples = row.at("shaded_samples").get<std::uint64_t>();
+  return technique;
+}
+
+}  // namespace
+
+Table ranking_table(const Ranking& ranking) {
+  Table table{{{"technique", "technique"},
+               {"verdict", "verdict"},
+               {"pareto", "Pareto"},
+               {"frame_ms", "ms", true},
+               {"lo_ms", "lo", true},
+               {"hi_ms", "hi", true},
+               {"support", "support"},
+               {"aa_ms", "AA ms", true},
+               {"extra_mib", "extra MiB", true},
+               {"dram_mb", "DRAM MB", true},
+               {"flip_mean", "FLIP", true},
+               {"psnr_db", "PSNR dB", true},
+               {"shaded_samples", "shaded samples", true},
+               {"reason", "reason", false, 48}},
+              {}};
+  for (const RankedTechnique& t : ranking.techniques) {
+    const auto value = [&](double number, int decimals) -> Cell {
+      return t.runs() ? Cell{Real{number, decimals}} : Cell{NotApplicable{}};
+    };
+    const auto bound = [&](std::size_t i) -> Cell {
+      return t.interval_ms ? Cell{Real{(*t.interval_ms)[i], 3}} : Cell{NotApplicable{}};
+    };
+    table.rows.push_back({t.technique, t.verdict, t.pareto ? "yes" : "", value(t.frame_ms, 3), bound(0),
+                          bound(1), t.support, value(t.aa_ms, 3), value(t.extra_mib, 1), value(t.dram_mb, 1),
+                          value(t.flip_mean, 4), value(t.psnr_db, 2),
+                          t.runs() ? Cell{t.shaded_samples} : Cell{NotApplicable{}}, t.reason});
+  }
+  return table;
+}
+
+Json to_json(const Ranking& ranking) {
+  Json json = {{"schema_version", kResultSchemaVersion},
+               {"scene", ranking.scene},
+               {"gpu", ranking.gpu},
+               {"resolution", {ranking.resolution.width_px, ranking.resolution.height_px}},
+               {"budget", ranking.budget},
+               {"reference_samples", ranking.reference_samples},
+               {"techniques", to_json(ranking_table(ranking))}};
+  if (!ranking.regions) return json;
+  json["regions"] = Json::array();
+  for (const Region& region : *ranking.regions)
+    json["regions"].push_back({{"x_px", region.x}, {"y_px", region.y}, {"side_px", region.side}});
+  return json;
+}
+
+Ranking ranking_from_json(const Json& json) {
+  Ranking ranking{
+      .scene = json.at("scene").get<std::string>(),
+      .gpu = json.at("gpu").get<std::string>(),
+      .resolution = {json.at("resolution").at(0).get<int>(), json.at("resolution").at(1).get<int>()},
+      .budget = json.at("budget").get<std::string>(),
+      .reference_samples = json.at("reference_samples").get<int>()};
+  for (const Json& row : json.at("techniques")) ranking.techniques.push_back(technique_from_json(row));
+  if (const auto regions = json.find("regions"); regions != json.end()) {
+    ranking.regions.emplace();
+    for (const Json& region : *regions)
+      ranking.regions->push_back(
+          {region.at("x_px").get<int>(), region.at("y_px").get<int>(), region.at("side_px").get<int>()});
+  }
+  return ranking;
+}
+
+}  // namespace hwsim::lab
