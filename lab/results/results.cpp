@@ -11,10 +11,6 @@
 namespace hwsim::lab {
 namespace {
 
-constexpr double kNsPerMs = 1e6;
-constexpr double kBytesPerMb = 1e6;
-constexpr double kBytesPerMib = 1024.0 * 1024.0;
-
 /// Units that did something, the largest share of time first.
 std::vector<size_t> units_by_share(const std::array<double, kUnitCount>& stack_ns) {
   std::vector<size_t> order;
