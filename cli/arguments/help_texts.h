@@ -108,7 +108,7 @@ Prints a complete GPU file: what its parents, overlays and --set made of it.)";
 
 inline constexpr std::string_view kHelpConfigSchema = R"(Examples:
   hwsim config schema
-  hwsim config schema gpu
+  hwsim config schema run
 
 Prints the JSON Schema of a file, for editors.)";
 

@@ -30,9 +30,10 @@ ExitStatus check(const ConfigOptions& options) {
   return ExitStatus::done;
 }
 
-void check_kind(const ConfigOptions& options) {
-  if (options.names.empty() || options.names.front() == "gpu") return;
-  fail_usage("U003", "no schema of `" + options.names.front() + "`, only of gpu");
+std::string schema_of(const std::vector<std::string>& names) {
+  if (names.empty() || names.front() == "gpu") return gpu_schema_json();
+  if (names.front() == "run") return run_schema_json();
+  fail_usage("U003", "no schema of `" + names.front() + "`, only of gpu and run");
 }
 
 }  // namespace
@@ -52,8 +53,7 @@ ExitStatus config(const ConfigOptions& options, Context& context) {
         print({.table = key_table(load(0), options.origin)}, options.common);
       break;
     case Action::schema:
-      check_kind(options);
-      write_text(gpu_schema_json());
+      write_text(schema_of(options.names));
       break;
     case Action::diff: {
       const Table table = difference_table(load(0), load(1));

@@ -1,8 +1,7 @@
 #pragma once
 // What is asked of the lab, as plain data with defaults. Each value is declared once, in `describe`: from
-// that line follow
-// `--set`, run.toml both ways, the keys of every cache, and the manifest. A member without a declaration does
-// not compile.
+// that line follow `--set`, run.toml both ways with its schema, and the keys of every cache. A member without
+// a declaration does not compile.
 #include <string>
 #include <string_view>
 #include <vector>
@@ -152,7 +151,8 @@ void describe(Visitor& v, Settings& settings) {
           detailed_sample);
   v.field({{"calibrated", 0, 0, kNoFlags,
             "the fitted numbers of a GPU, where there are, not the documented ones"},
-           "timing"},
+           "timing",
+           "calibrated"},
           calibrated);
   v.field({{"reference_samples", 0, kMaxReferenceSamples, kNoFlags,
             "samples a pixel of the ray-traced reference; 0: none"},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "hwsim/base/file_name.h"
 #include "hwsim/config/assign.h"
@@ -47,6 +48,25 @@ Key key_in_file(const Field& field) {
   Key key{field.info.key, field.slot};
   key.info.name = field.info.file_key;
   return key;
+}
+
+/// Of one value: its type, range or words, default and meaning.
+nlohmann::ordered_json field_schema(const Field& field) {
+  const bool whole = std::holds_alternative<int*>(field.slot);
+  nlohmann::ordered_json schema;
+  schema["description"] = std::string(field.info.key.description);
+  std::visit([&](const auto& value) { schema["default"] = value; }, value_in(field.slot));
+  if (std::holds_alternative<bool*>(field.slot)) {
+    schema["type"] = "boolean";
+  } else if (std::holds_alternative<std::string*>(field.slot)) {
+    schema["type"] = "string";
+    if (!field.info.choices.empty()) schema["enum"] = split(field.info.choices, '|');
+  } else {
+    schema["type"] = whole ? "integer" : "number";
+    schema["minimum"] = field.info.key.low;
+    schema["maximum"] = field.info.key.high;
+  }
+  return schema;
 }
 
 void check_choice(const Field& field, const SourcePlace& place, std::vector<Diagnostic>& problems) {
@@ -136,6 +156,24 @@ std::string run_file_text(const RunPlan& plan, const algos::TechniqueChoice& tec
   for (const Field& field : recorded_fields(header, request))
     text += fmt::format("{} = {}\n", field.info.file_key, to_toml(value_in(field.slot)));
   return text;
+}
+
+std::string run_schema_json() {
+  Header header{.kind = "run"};
+  Request request;
+  nlohmann::ordered_json properties;
+  for (const Field& field : recorded_fields(header, request))
+    properties[std::string(field.info.file_key)] = field_schema(field);
+  for (const auto& [name, value] : {std::pair("schema", nlohmann::ordered_json(kSchema)), {"kind", "run"}})
+    properties[name] = {{"description", properties[name]["description"]}, {"const", value}};
+  properties["scene"].erase("default");  // empty: the one value that a file must give
+  const nlohmann::ordered_json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                                         {"title", "hwsim run"},
+                                         {"type", "object"},
+                                         {"required", {"schema", "kind", "scene"}},
+                                         {"properties", properties},
+                                         {"additionalProperties", false}};
+  return schema.dump(2) + "\n";
 }
 
 }  // namespace hwsim::lab

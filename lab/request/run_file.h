@@ -14,4 +14,7 @@ Request read_run_file(const std::string& path);
 std::string run_file_text(const RunPlan& plan, const algos::TechniqueChoice& technique,
                           const std::string& gpu_file);
 
+/// JSON Schema (draft 2020-12) of a run.toml.
+std::string run_schema_json();
+
 }  // namespace hwsim::lab

@@ -1,0 +1,150 @@
+// The one declaration of a request's values, over all of them: what they change, and where they come back.
+#include "lab/request/request.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "lab/request/run_file.h"
+#include "lab/store/trace_store.h"
+#include "pipeline/image/image_io.h"
+
+namespace hwsim::lab {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::set<std::string>;
+
+/// Gives the value another one, inside its range and among its words.
+void change(const Field& field) {
+  if (auto* const* number = std::get_if<double*>(&field.slot))
+    **number = **number == 0.0 ? 0.5 : **number * 0.5;
+  else if (auto* const* whole = std::get_if<int*>(&field.slot))
+    **whole += 1;
+  else if (auto* const* flag = std::get_if<bool*>(&field.slot))
+    **flag = !**flag;
+  else if (std::string& text = *std::get<std::string*>(field.slot); !field.info.choices.empty())
+    text = field.info.choices.substr(field.info.choices.rfind('|') + 1);
+  else if (field.info.key.name == "engine")
+    text = "roofline";
+  else if (field.info.key.name == "skip")
+    text = "none";
+  else
+    text = "1";
+}
+
+Names names_of(const std::vector<Field>& fields, bool (*wanted)(const FieldInfo&)) {
+  Names names;
+  for (const Field& field : fields)
+    if (wanted(field.info)) names.emplace(field.info.key.name);
+  return names;
+}
+
+/// The values of a view that, each changed alone, change its text for a cache's key.
+Names changing(FieldUse use) {
+  Names names;
+  View plain;
+  const std::size_t count = fields_of(plain).size();
+  for (std::size_t i = 0; i < count; ++i) {
+    View view;
+    const Field field = fields_of(view)[i];
+    change(field);
+    if (key_text(view, use) != key_text(plain, use)) names.emplace(field.info.key.name);
+  }
+  return names;
+}
+
+// What a technique draws depends on all that the view says; the content of the scene and the index of the
+// camera stand in the keys in place of their names. A ray-traced picture has no shadow map.
+TEST(Request, EveryValueOfAViewChangesTheKeysOfTheCaches) {
+  View view;
+  Names all = names_of(fields_of(view), [](const FieldInfo&) { return true; });
+  for (const char* elsewhere : {"scene", "camera", "exposure", "memory_mib"}) all.erase(elsewhere);
+  EXPECT_EQ(changing(kWork), all);
+  all.erase("shadow_map_px");
+  EXPECT_EQ(changing(kReference), all);
+}
+
+TEST(Request, TheKeyOfATraceHoldsEveryValueOfItsView) {
+  const std::string image = (fs::path(::testing::TempDir()) / "hwsim_request.png").string();
+  pipeline::write_image(pipeline::Image(8, 8), image);
+  Observer silent;
+  const algos::TechniqueChoice technique = algos::parse_technique("fxaa");
+  const GpuConfig gpu;
+  const auto work = [&](const View& view, const FrameNeeds& needs = {}) {
+    return TraceStore::work_text(SceneView(view, silent), technique, gpu, needs);
+  };
+  View plain;
+  plain.scene = image;
+  for (std::size_t i = 0; i < fields_of(plain).size(); ++i) {
+    View view = plain;
+    const Field field = fields_of(view)[i];
+    if ((field.info.uses & kWork) == 0 || field.info.key.name.ends_with("_px"))
+      continue;  // it has its own size
+    change(field);
+    EXPECT_NE(work(view), work(plain)) << field.info.key.name;
+  }
+  FrameNeeds unskipped;
+  for (const pipeline::SkipInfo& info : pipeline::kSkips)
+    unskipped.skip.*info.flag = !(unskipped.skip.*info.flag);
+  EXPECT_NE(work(plain, unskipped), work(plain));
+  fs::remove(image);
+}
+
+/// The request that comes back from a run.toml which one changed value was written to.
+class RunFile : public ::testing::Test {
+ protected:
+  Request there_and_back(const Request& request) {
+    const RunPlan plan = make_plan(request, files_);
+    const std::string path = (fs::path(::testing::TempDir()) / "hwsim_request_run.toml").string();
+    std::ofstream(path) << run_file_text(plan, plan.techniques.front(), "gtx980");
+    const Request back = read_run_file(path);
+    fs::remove(path);
+    return back;
+  }
+  static Request request() {
+    Request r;
+    r.view.scene = "sponza_hall";
+    return r;
+  }
+  ConfigFiles files_;
+};
+
+TEST_F(RunFile, EveryValueReadsBack) {
+  Request plain = request();
+  const auto fields = [](Request& r) {
+    std::vector<Field> all = fields_of(r.view);
+    for (const Field& field : fields_of(r.settings)) all.push_back(field);
+    return all;
+  };
+  const std::size_t count = fields(plain).size();
+  for (std::size_t i = 0; i < count; ++i) {
+    Request changed = request();
+    const Field field = fields(changed)[i];
+    if (field.info.key.name == "images" || field.info.key.name == "memory_mib")
+      continue;  // what is written beside the numbers is asked for each time
+    change(field);
+    const Request back = there_and_back(changed);
+    EXPECT_EQ(back.view, changed.view) << field.info.key.name;
+    EXPECT_EQ(back.settings, changed.settings) << field.info.key.name;
+  }
+}
+
+TEST_F(RunFile, SchemaNamesEveryKeyThatIsWritten) {
+  const auto schema = nlohmann::json::parse(run_schema_json());
+  Names known, written;
+  for (const auto& [name, value] : schema.at("properties").items()) known.insert(name);
+  const RunPlan plan = make_plan(request(), files_);
+  std::istringstream text(run_file_text(plan, plan.techniques.front(), "gtx980"));
+  for (std::string line; std::getline(text, line);) written.insert(line.substr(0, line.find(' ')));
+  EXPECT_EQ(known, written);
+  EXPECT_EQ(schema.at("properties").at("width_px").at("maximum"), kMaxSidePx);
+  EXPECT_EQ(schema.at("properties").at("lights").at("enum"), (nlohmann::json{"scene", "simple", "complex"}));
+}
+
+}  // namespace
+}  // namespace hwsim::lab
