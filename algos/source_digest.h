@@ -1,4 +1,5 @@
 #pragma once
+// The digest of the sources that a trace depends on.
 #include <string_view>
 
 namespace hwsim::algos {

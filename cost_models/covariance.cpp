@@ -28,9 +28,9 @@ std::vector<std::size_t> free_parameters(const Experiment& experiment, const std
 /// The rows of the weighted Jacobian and the weighted residuals, without the noise, and their sums. The sums
 /// of all parameters also hold those at a bound.
 struct Linearization {
-  Eigen::MatrixXd rows;  ///< of the free parameters
+  Eigen::MatrixXd rows;  ///< the free parameters'
   Eigen::VectorXd residuals;
-  std::vector<double> slope, curvature;  ///< of all parameters: row by residual, row by row
+  std::vector<double> slope, curvature;  ///< all parameters': row by residual, row by row
   double squares = 0.0, weights = 0.0;
   double loss = 0.0;  ///< the Cauchy loss of all residuals, in units of robust_log^2
 };

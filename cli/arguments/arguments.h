@@ -1,4 +1,5 @@
 #pragma once
+// The command line as a command with its options.
 #include <optional>
 #include <string>
 #include <string_view>

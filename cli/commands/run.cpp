@@ -65,7 +65,7 @@ class ShownRun : public RunSink {
     answer.footing = "\n" + to_text(unit_table(point));
   }
 
-  Answer answer;  ///< of the last point
+  Answer answer;  ///< the last point's
 
  private:
   RunRecord& record_;

@@ -1,4 +1,5 @@
 #pragma once
+// The progress bar.
 #include <chrono>
 #include <mutex>
 #include <string>

@@ -1,4 +1,5 @@
 #pragma once
+// The features of a GPU that can do everything.
 #include "hwsim/gpu/gpu_features.h"
 
 namespace hwsim {

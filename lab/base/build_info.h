@@ -1,4 +1,5 @@
 #pragma once
+// What was built: version, commit, compiler, vector targets.
 #include <string_view>
 
 namespace hwsim::lab {

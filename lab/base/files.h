@@ -1,4 +1,5 @@
 #pragma once
+// Files that the application reads and writes, and where it finds its own.
 #include <cstdint>
 #include <string>
 #include <string_view>

@@ -1,4 +1,5 @@
 #pragma once
+// Short ways to raise an error.
 #include <span>
 #include <string>
 #include <string_view>

@@ -1,4 +1,5 @@
 #pragma once
+// The codes of all messages, with explanations.
 #include <span>
 #include <string_view>
 #include <vector>

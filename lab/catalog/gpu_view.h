@@ -1,4 +1,5 @@
 #pragma once
+// A GPU as tables of keys, values and their meaning.
 #include <string>
 #include <vector>
 

@@ -34,7 +34,7 @@ struct View {
   std::string lights = "scene";
   bool shadows = true;
   int shadow_map_px = 2048;
-  double exposure = 0.0;  ///< of the file's lights; 0: automatic (pipeline::SceneLoadOptions)
+  double exposure = 0.0;  ///< factor on the file's lights; 0: automatic (pipeline::SceneLoadOptions)
   int memory_mib = 2048;  ///< that loading the scene may take
   bool operator==(const View&) const = default;
 };

@@ -50,7 +50,7 @@ Key key_in_file(const Field& field) {
   return key;
 }
 
-/// Of one value: its type, range or words, default and meaning.
+/// The schema of one value: its type, range or words, default and meaning.
 nlohmann::ordered_json field_schema(const Field& field) {
   const bool whole = std::holds_alternative<int*>(field.slot);
   nlohmann::ordered_json schema;

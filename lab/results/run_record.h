@@ -22,7 +22,7 @@ class RunRecord : public RunSink {
   struct Subject {
     const RunPlan& plan;
     std::string id_source;               ///< from which a folder that is not named gets its id
-    std::vector<std::string> arguments;  ///< of the command line, where there is one
+    std::vector<std::string> arguments;  ///< the command line's, where there is one
     Layout layout = Layout::automatic;
   };
 

@@ -24,7 +24,7 @@ struct Reproduction {
   std::string paper;
   std::vector<ReproducedRow> rows{};                ///< every row of every table
   std::optional<cost_models::Figures> figures{};    ///< errors of the fitted times; none without any
-  std::vector<cost_models::HeldOut> predictions{};  ///< of times, in the order of the runs
+  std::vector<cost_models::HeldOut> predictions{};  ///< times, in the order of the runs
 };
 
 /// Predicts by the calibration's parameters, or by the documented ones where there is none, which the

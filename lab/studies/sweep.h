@@ -22,9 +22,9 @@ Shard parse_shard(const std::string& text);
 struct PlannedPoint {
   SweepPoint point{};
   std::shared_ptr<const RunPlan> plan;
-  const algos::TechniqueChoice* technique = nullptr;  ///< of the plan
-  const GpuConfig* gpu = nullptr;                     ///< of the plan
-  SceneView* scene = nullptr;                         ///< of the session
+  const algos::TechniqueChoice* technique = nullptr;  ///< the plan's
+  const GpuConfig* gpu = nullptr;                     ///< the plan's
+  SceneView* scene = nullptr;                         ///< the session's
   std::string work{};                                 ///< equal where one emulation serves both
 };
 

@@ -12,7 +12,7 @@ namespace hwsim::lab {
 struct Validation {
   cost_models::Experiment experiment;
   cost_models::Validation figures;
-  double fit_wall_s = 0.0;  ///< of the fit to all cells
+  double fit_wall_s = 0.0;  ///< what the fit to all cells took
 };
 
 /// Fits to all cells of the experiment, then to each complement of a fold.
