@@ -115,8 +115,7 @@ std::string lights_line(const Scene& scene, const std::vector<std::string>& name
 }
 
 std::string cost_line(const Scene& scene, const SceneStats& s) {
-  // Measured on two cores of 2 GHz: a load, and a frame of 1280 x 720 by `none`, grow with triangles and
-  // texels.
+  // An estimate for two cores, to tell seconds from minutes: the time grows with triangles and texels.
   const double seconds =
       1.0 + 2.5e-6 * static_cast<double>(s.drawn_triangles) + 3e-8 * static_cast<double>(s.texture_bytes);
   return "loading takes at most about " + std::to_string((scene.memory_bytes >> 20) + 1) +
