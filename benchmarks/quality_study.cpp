@@ -25,6 +25,7 @@
 #include "pipeline/generate/registry.h"
 #include "pipeline/image/metrics.h"
 #include "pipeline/image/srgb_codes.h"
+#include "pipeline/open/scene_source.h"
 #include "study_input.h"
 
 namespace hwsim::benchmarks {
