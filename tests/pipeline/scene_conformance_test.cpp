@@ -79,7 +79,8 @@ TEST_P(RealScene, HasTheListedCounts) {
   EXPECT_EQ(got.vertices, want.vertices);
   EXPECT_FALSE(scene.lights.empty());
   EXPECT_TRUE(scene.lights.front().casts_shadow);
-  for (const Texture& texture : scene.textures) EXPECT_EQ(texture.levels.back().texels.size(), 1u);
+  for (std::size_t i = 0; i < scene.textures.size(); ++i)
+    EXPECT_EQ(levels_of(scene, i).back().texels.size(), 1u) << "texture " << i;
 }
 
 // The README's table beside the scenes.
