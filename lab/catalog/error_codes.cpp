@@ -49,7 +49,10 @@ constexpr ErrorCode kCodes[] = {
      "--sample lhs:POINTS."},
     {"U020", "no result", "The folder or file is not what `hwsim run` writes."},
     {"U021", "database of a sweep",
-     "The SQLite database cannot be opened or written, is damaged, or was not written by `hwsim sweep`."},
+     "The SQLite database cannot be opened or written, is damaged, or was not written by `hwsim sweep` of "
+     "this "
+     "version: such a database carries the application id 0x68775357. A file without it is never written "
+     "to."},
     {"U022", "bad budget",
      "--budget is a list of quantity<=number; quantities are aa_ms, frame_ms, extra_mib, memory_mib, "
      "dram_mb."},

@@ -1,6 +1,10 @@
 #include "lab/store/database.h"
 
+#include <fmt/format.h>
 #include <sqlite3.h>
+
+#include <cctype>
+#include <filesystem>
 
 #include "lab/base/messages.h"
 
@@ -9,11 +13,37 @@ namespace {
 
 constexpr int kBusyMs = 10'000;  // another process holds the lock for a point's transaction only
 
-sqlite3* open(const std::string& path, Database::Mode mode) {
+sqlite3* open(const std::string& path, int flags) {
   sqlite3* handle = nullptr;
-  const int flags = SQLITE_OPEN_READWRITE | (mode == Database::Mode::create ? SQLITE_OPEN_CREATE : 0);
   sqlite3_open_v2(path.c_str(), &handle, flags, nullptr);
   return handle;  // with the error inside, if there was one
+}
+
+/// The name of a file that SQLite takes for unchanging: it needs no lock and no file beside it.
+std::string immutable_uri(const std::string& path) {
+  std::string uri = "file:";
+  for (const char c : path)
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '/' || c == '.' || c == '_' || c == '-')
+      uri += c;
+    else
+      uri += fmt::format("%{:02x}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+  return uri + "?immutable=1";
+}
+
+/// SQLite cannot read a database of the mode WAL in a folder without write permission, as it wants a file for
+/// locks there. Without a log beside the database nobody writes it, so that no lock is needed.
+sqlite3* open_to_look(const std::string& path) {
+  sqlite3* handle = open(path, SQLITE_OPEN_READONLY);
+  std::error_code error;
+  const bool readable = sqlite3_exec(handle, "PRAGMA schema_version", nullptr, nullptr, nullptr) == SQLITE_OK;
+  if (readable || std::filesystem::exists(path + "-wal", error)) return handle;
+  sqlite3_close(handle);
+  return open(immutable_uri(path), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
+}
+
+sqlite3* open(const std::string& path, Database::Mode mode) {
+  if (mode == Database::Mode::look) return open_to_look(path);
+  return open(path, SQLITE_OPEN_READWRITE | (mode == Database::Mode::create ? SQLITE_OPEN_CREATE : 0));
 }
 
 }  // namespace
@@ -35,6 +65,10 @@ void Database::require(int code) const {
 
 void Database::execute(const std::string& sql) {
   require(sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr));
+}
+
+bool Database::try_execute(const std::string& sql) {
+  return sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK;
 }
 
 Database::Statement::Statement(Database& database, std::string_view sql)
@@ -64,6 +98,12 @@ Database::Statement& Database::Statement::bind_null(int place) {
   return *this;
 }
 
+Database::Statement& Database::Statement::bind(int place, const Statement& row, int column) {
+  database_.require(
+      sqlite3_bind_value(handle_.get(), place, sqlite3_column_value(row.handle_.get(), column)));
+  return *this;
+}
+
 bool Database::Statement::step() {
   const int code = sqlite3_step(handle_.get());
   if (code != SQLITE_ROW && code != SQLITE_DONE) database_.fail();
@@ -72,8 +112,10 @@ bool Database::Statement::step() {
 
 void Database::Statement::run() {
   step();
-  database_.require(sqlite3_reset(handle_.get()));
+  reset();
 }
+
+void Database::Statement::reset() { database_.require(sqlite3_reset(handle_.get())); }
 
 std::string Database::Statement::text(int column) const {
   const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(handle_.get(), column));

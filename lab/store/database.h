@@ -14,10 +14,15 @@ namespace hwsim::lab {
 /// Throws InputError U021 with SQLite's reason, from every function.
 class Database {
  public:
-  enum class Mode { create, open };
+  enum class Mode {
+    create,  ///< the file is made when there is none
+    write,
+    look  ///< the file and its folder may be read-only; nothing is written
+  };
   Database(const std::string& path, Mode mode);
 
   void execute(const std::string& sql);
+  bool try_execute(const std::string& sql);  ///< false where it failed, without an error
 
   class Statement {
    public:
@@ -26,8 +31,10 @@ class Database {
     Statement& bind(int place, double value);
     Statement& bind(int place, std::int64_t value);
     Statement& bind_null(int place);
-    bool step();  ///< true: there is a row
-    void run();   ///< a statement without rows; ready to be bound again
+    Statement& bind(int place, const Statement& row, int column);  ///< a value of another statement's row
+    bool step();                                                   ///< true: there is a row
+    void run();    ///< a statement without rows; ready to be bound again
+    void reset();  ///< ready to be bound again
     std::string text(int column) const;
     std::int64_t integer(int column) const;
     std::optional<double> real(int column) const;  ///< none: NULL

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <numeric>
 
@@ -105,10 +104,11 @@ void run_points(const std::vector<PlannedPoint>& points, const SweepJob& job, Sw
   }
 }
 
-/// Removes a sweep's database, and no other file.
-void remove_database(const std::string& path) {
-  SweepStore(path, true);
-  for (const char* part : {"", "-wal", "-shm"}) std::filesystem::remove(path + part);
+SweepAccess access_of(const SweepJob& job, bool has_points) {
+  if (!has_points) return job.merge.empty() ? SweepAccess::look : SweepAccess::go_on;
+  if (job.resume) return SweepAccess::go_on;
+  if (job.force) return SweepAccess::replace;
+  return job.merge.empty() ? SweepAccess::create : SweepAccess::go_on;
 }
 
 }  // namespace
@@ -154,13 +154,12 @@ Table planned_table(const std::vector<PlannedPoint>& points) {
 }
 
 SweepSummary run_sweep(const std::vector<PlannedPoint>& points, const SweepJob& job, Session& session) {
-  if (job.force && !points.empty() && !job.resume) remove_database(job.database);
-  SweepStore store(job.database, job.resume || points.empty() || !job.merge.empty());
+  SweepStore store(job.database, access_of(job, !points.empty()));
   for (const std::string& other : job.merge)
     session.observer().say(fmt::format("merged {} points of {}", store.merge(other), other));
   if (!points.empty()) run_points(points, job, store, session);
   return {job.database, store.count("done"), store.count("failed"),
-          store.count("pending") + store.count("interrupted"), store.points()};
+          store.count("pending") + store.count("running") + store.count("interrupted"), store.points()};
 }
 
 }  // namespace hwsim::lab

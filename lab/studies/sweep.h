@@ -47,11 +47,13 @@ struct SweepJob {
 
 struct SweepSummary {
   std::string database{};
-  std::size_t done = 0, failed = 0, left = 0;
-  Table points{};  ///< every point of the database
+  std::size_t done = 0, failed = 0;
+  std::size_t left = 0;  ///< waiting, interrupted, or running: in another process, or in one that was killed
+  Table points{};        ///< every point of the database
 };
 
-/// Runs what is not done. Without points it opens, merges and reads the database only. A point that cannot
+/// Runs what is not done. Without points it merges and reads the database only; without databases to merge it
+/// opens it read-only. A point that cannot
 /// run is failed, with a warning to the observer; throws InputError U013 or U021 for the database itself.
 SweepSummary run_sweep(const std::vector<PlannedPoint>& points, const SweepJob& job, Session& session);
 

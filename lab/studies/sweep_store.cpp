@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "algos/rooms.h"
@@ -12,29 +11,6 @@
 
 namespace hwsim::lab {
 namespace {
-
-// Raised when a column changes its meaning; columns are only added otherwise.
-constexpr const char* kSchemaVersion = "1";
-
-constexpr const char* kSchema = R"(
-CREATE TABLE IF NOT EXISTS sweep (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS point (
-  id TEXT PRIMARY KEY, number INTEGER NOT NULL, scene TEXT NOT NULL, technique TEXT NOT NULL,
-  gpu TEXT NOT NULL, engine TEXT NOT NULL, width_px INTEGER NOT NULL, height_px INTEGER NOT NULL,
-  settings TEXT NOT NULL, run_file TEXT NOT NULL, gpu_file TEXT NOT NULL,
-  state TEXT NOT NULL, message TEXT NOT NULL DEFAULT '',
-  time_ms REAL, lo_ms REAL, hi_ms REAL, support TEXT, limiter TEXT, dram_mb REAL, memory_mib REAL,
-  shaded_samples INTEGER, from_cache INTEGER) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS pass (
-  point_id TEXT NOT NULL REFERENCES point(id), ordinal INTEGER NOT NULL, name TEXT NOT NULL,
-  kind TEXT NOT NULL, time_ms REAL NOT NULL, limiter TEXT NOT NULL, dram_mb REAL NOT NULL,
-  PRIMARY KEY (point_id, ordinal)) WITHOUT ROWID;
-)";
-
-bool exists(const std::string& path) {
-  std::error_code error;
-  return std::filesystem::exists(path, error);
-}
 
 std::string settings_json(const std::vector<Assignment>& settings) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
@@ -46,21 +22,13 @@ std::int64_t signed_count(std::uint64_t count) { return static_cast<std::int64_t
 
 }  // namespace
 
-SweepStore::SweepStore(const std::string& path, bool may_exist)
-    : path_(path), database_([&] {
-        if (!may_exist && exists(path))
-          hwsim::lab::fail("U013", "`" + path + "` exists and is not overwritten", "",
-                           "another --db, --resume to go on with it, or --force to replace it");
-        return Database(path, Database::Mode::create);
-      }()) {
-  database_.execute("PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL; PRAGMA foreign_keys=ON");
-  database_.execute(kSchema);
-  Database::Statement version(database_, "SELECT value FROM sweep WHERE key = 'schema_version'");
-  if (!version.step())
-    remember("schema_version", kSchemaVersion);
-  else if (version.text(0) != kSchemaVersion)
-    hwsim::lab::fail(
-        "U021", "`" + path + "` has version " + version.text(0) + ", this program writes " + kSchemaVersion);
+SweepStore::SweepStore(const std::string& path, SweepAccess access)
+    : path_(path), writes_(access != SweepAccess::look), database_(open_sweep(path, access)) {}
+
+SweepStore::~SweepStore() {
+  // One file, with nothing beside it, can be copied and read anywhere. Where another process still uses the
+  // database, that one closes it.
+  if (writes_) database_.try_execute("PRAGMA busy_timeout=0; PRAGMA journal_mode=DELETE");
 }
 
 void SweepStore::remember(const std::string& key, const std::string& value) {
@@ -146,26 +114,56 @@ void SweepStore::finish(const std::string& id, const PointResult& result) {
   transaction.commit();
 }
 
-std::size_t SweepStore::merge(const std::string& path) {
-  if (!exists(path)) hwsim::lab::fail("U021", "there is no database `" + path + "`");
-  const auto done = [this] { return count("done"); };
-  const std::size_t before = done();
-  { SweepStore checked(path, true); }  // another version, or no sweep at all, ends here
-  Database::Statement(database_, "ATTACH DATABASE ? AS other").bind(1, path).run();
-  {
-    Database::Transaction transaction(database_);
-    database_.execute(
-        "DELETE FROM main.pass WHERE point_id IN (SELECT o.id FROM other.point o JOIN main.point m ON o.id = "
-        "m.id WHERE o.state = 'done' AND m.state <> 'done')");
-    database_.execute(
-        "DELETE FROM main.point WHERE state <> 'done' AND id IN (SELECT id FROM other.point WHERE state = "
-        "'done')");
-    database_.execute("INSERT OR IGNORE INTO main.point SELECT * FROM other.point");
-    database_.execute("INSERT OR IGNORE INTO main.pass SELECT * FROM other.pass");
-    transaction.commit();
+namespace {
+
+/// Copies the rows of one table that belong to a point.
+class RowCopier {
+ public:
+  RowCopier(Database& from, Database& to, const std::string& table, const std::vector<std::string>& columns)
+      : columns_(static_cast<int>(columns.size())),
+        select_(from,
+                fmt::format("SELECT {} FROM {} WHERE {} = ?", fmt::join(columns, ", "), table, columns[0])),
+        insert_(to, fmt::format("INSERT INTO {} ({}) VALUES ({})", table, fmt::join(columns, ", "),
+                                fmt::join(std::vector<std::string>(columns.size(), "?"), ", "))) {}
+
+  void copy(const std::string& point_id) {
+    select_.bind(1, point_id);
+    while (select_.step()) {
+      for (int i = 0; i < columns_; ++i) insert_.bind(i + 1, select_, i);
+      insert_.run();
+    }
+    select_.reset();
   }
-  database_.execute("DETACH DATABASE other");
-  return done() - before;
+
+ private:
+  int columns_;
+  Database::Statement select_, insert_;
+};
+
+}  // namespace
+
+std::size_t SweepStore::merge(const std::string& path) {
+  Database other = open_sweep(path, SweepAccess::look);
+  const std::size_t before = count("done");
+  Database::Transaction transaction(database_);
+  RowCopier points(other, database_, "point",
+                   {"id",       "number",     "scene",          "technique", "gpu",      "engine",
+                    "width_px", "height_px",  "settings",       "run_file",  "gpu_file", "state",
+                    "message",  "time_ms",    "lo_ms",          "hi_ms",     "support",  "limiter",
+                    "dram_mb",  "memory_mib", "shaded_samples", "from_cache"});
+  RowCopier passes(other, database_, "pass",
+                   {"point_id", "ordinal", "name", "kind", "time_ms", "limiter", "dram_mb"});
+  Database::Statement all(other, "SELECT id, state FROM point");
+  while (all.step()) {
+    const std::string id = all.text(0), here = state_of(id);
+    if (here == "done" || (!here.empty() && all.text(1) != "done")) continue;
+    Database::Statement(database_, "DELETE FROM pass WHERE point_id = ?").bind(1, id).run();
+    Database::Statement(database_, "DELETE FROM point WHERE id = ?").bind(1, id).run();
+    points.copy(id);
+    passes.copy(id);
+  }
+  transaction.commit();
+  return count("done") - before;
 }
 
 std::size_t SweepStore::count(const std::string& state) {

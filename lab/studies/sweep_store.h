@@ -7,6 +7,7 @@
 #include "lab/base/table.h"
 #include "lab/results/results.h"
 #include "lab/store/database.h"
+#include "lab/studies/sweep_file.h"
 
 namespace hwsim::lab {
 
@@ -21,9 +22,11 @@ struct SweepPoint {
 
 class SweepStore {
  public:
-  /// Throws InputError U013 when the file exists and `may_exist` is false, and U021 when it is no sweep of
-  /// this version.
-  SweepStore(const std::string& path, bool may_exist);
+  /// Throws what `open_sweep` throws.
+  SweepStore(const std::string& path, SweepAccess access);
+  ~SweepStore();
+  SweepStore(const SweepStore&) = delete;
+  SweepStore& operator=(const SweepStore&) = delete;
 
   /// Points that are new become pending; those that a killed process left running become interrupted.
   void add(const std::vector<SweepPoint>& points);
@@ -34,7 +37,8 @@ class SweepStore {
   void finish(const std::string& id, const PointResult& result);
   void fail(const std::string& id, const std::string& message);
 
-  /// Takes over the finished points of another sweep's database. Returns how many were new.
+  /// Takes over the finished points of another sweep's database, which is only read. Returns how many were
+  /// new.
   std::size_t merge(const std::string& path);
 
   /// Every point, in order: CSV, and what follows from it.
@@ -45,6 +49,7 @@ class SweepStore {
   void set_state(const std::string& id, const std::string& state, const std::string& message);
 
   std::string path_;
+  bool writes_;
   Database database_;
 };
 

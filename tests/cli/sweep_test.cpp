@@ -112,6 +112,28 @@ TEST_F(SweepTest, ExistingSweepIsKeptUnlessForcedOrResumed) {
   EXPECT_EQ(json::parse(place.hwsim("sweep --json").out).size(), 2u);
 }
 
+// A database that carries no mark of hwsim may be anybody's.
+TEST_F(SweepTest, DatabaseOfAnotherProgramStaysAsItWas) {
+  ASSERT_EQ(sweep("--db ours.sqlite").status, 0);
+  std::string foreign = place.read("ours.sqlite");
+  ASSERT_EQ(foreign.rfind("SQLite format 3", 0), 0u);
+  constexpr std::size_t kApplicationIdAt = 68;
+  foreign.replace(kApplicationIdAt, 4, std::string(4, '\0'));
+  place.write("notes.sqlite", foreign);
+  const std::string listing = place.listing();
+  for (const std::string arguments :
+       {"sweep --db notes.sqlite", "sweep triangle.gltf --db notes.sqlite --force",
+        "sweep triangle.gltf --db notes.sqlite --resume", "sweep --db notes.sqlite --merge ours.sqlite",
+        "sweep --db ours.sqlite --merge notes.sqlite"}) {
+    const Outcome outcome = place.hwsim(arguments);
+    EXPECT_EQ(outcome.status, 3) << arguments;
+    EXPECT_NE(outcome.err.find("error[U021]"), std::string::npos) << arguments << outcome.err;
+    EXPECT_NE(outcome.err.find("= help:"), std::string::npos) << arguments << outcome.err;
+    EXPECT_EQ(place.read("notes.sqlite"), foreign) << arguments;
+    EXPECT_EQ(place.listing(), listing) << arguments;
+  }
+}
+
 TEST_F(SweepTest, MistakesEndInMessages) {
   const auto refused = [&](const std::string& arguments, int status, const std::string& code) {
     const Outcome outcome = place.hwsim("sweep " + arguments);

@@ -4,8 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
 
 #include "hwsim/base/diagnostics.h"
+#include "lab/lab.h"
 
 namespace hwsim::lab {
 namespace {
@@ -49,7 +53,7 @@ class SweepStoreTest : public ::testing::Test {
 
   /// A database with these points, of which those with a time are done.
   void make(const std::string& name, const std::vector<std::pair<std::string, double>>& points) {
-    SweepStore store(path(name), false);
+    SweepStore store(path(name), SweepAccess::create);
     std::vector<SweepPoint> planned;
     for (const auto& [id, time_ns] : points)
       planned.push_back(point(id, static_cast<std::int64_t>(planned.size()) + 1));
@@ -69,13 +73,39 @@ class SweepStoreTest : public ::testing::Test {
     return found;
   }
 
+  /// A database of another program.
+  void make_foreign(const std::string& name) {
+    Database database(path(name), Database::Mode::create);
+    database.execute("CREATE TABLE point (id TEXT, note TEXT); INSERT INTO point VALUES ('p1', 'a thesis')");
+  }
+
+  /// The bytes of every file in the folder.
+  std::map<std::string, std::string> files() const {
+    std::map<std::string, std::string> found;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+      std::ifstream file(entry.path(), std::ios::binary);
+      found[entry.path().filename().string()] = {std::istreambuf_iterator<char>(file), {}};
+    }
+    return found;
+  }
+
+  static std::string code_of(const std::function<void()>& action) {
+    try {
+      action();
+    } catch (const InputError& error) {
+      EXPECT_FALSE(error.diagnostics().front().help.empty()) << error.what();
+      return error.diagnostics().front().code;
+    }
+    return "";
+  }
+
   fs::path folder_;
 };
 
 TEST_F(SweepStoreTest, MergeTakesOverWhatIsDoneThereAndNotHere) {
   make("a.db", {{"p1", 1e6}, {"p2", 0.0}, {"p3", 0.0}});
   make("b.db", {{"p1", 9e6}, {"p2", 2e6}, {"p3", 0.0}, {"p4", 4e6}});
-  SweepStore a(path("a.db"), true);
+  SweepStore a(path("a.db"), SweepAccess::go_on);
   EXPECT_EQ(a.merge(path("b.db")), 2u) << "p2 and p4";
   EXPECT_EQ(times(a), (std::map<std::string, double>{{"p1", 1.0}, {"p2", 2.0}, {"p3", -1.0}, {"p4", 4.0}}))
       << "what was done here stays as it was";
@@ -86,7 +116,7 @@ TEST_F(SweepStoreTest, MergeTakesOverWhatIsDoneThereAndNotHere) {
 TEST_F(SweepStoreTest, MergingTheSameAgainChangesNothing) {
   make("a.db", {{"p1", 1e6}});
   make("b.db", {{"p2", 2e6}});
-  SweepStore a(path("a.db"), true);
+  SweepStore a(path("a.db"), SweepAccess::go_on);
   EXPECT_EQ(a.merge(path("b.db")), 1u);
   EXPECT_EQ(a.merge(path("b.db")), 0u);
   EXPECT_EQ(a.count("done"), 2u);
@@ -96,24 +126,77 @@ TEST_F(SweepStoreTest, MergedPartsOfASweepEqualTheWhole) {
   make("whole.db", {{"p1", 1e6}, {"p2", 2e6}, {"p3", 3e6}});
   make("1.db", {{"p1", 1e6}, {"p2", 0.0}, {"p3", 0.0}});
   make("2.db", {{"p1", 0.0}, {"p2", 2e6}, {"p3", 3e6}});
-  SweepStore merged(path("1.db"), true), whole(path("whole.db"), true);
+  SweepStore merged(path("1.db"), SweepAccess::go_on), whole(path("whole.db"), SweepAccess::go_on);
   merged.merge(path("2.db"));
   EXPECT_EQ(to_csv(merged.points()), to_csv(whole.points()));
 }
 
 TEST_F(SweepStoreTest, MergeOfAFileThatIsNotThereIsRefused) {
   make("a.db", {{"p1", 1e6}});
-  SweepStore a(path("a.db"), true);
+  SweepStore a(path("a.db"), SweepAccess::go_on);
   EXPECT_THROW(a.merge(path("none.db")), InputError);
   EXPECT_FALSE(fs::exists(path("none.db"))) << "a look leaves no file";
 }
 
 TEST_F(SweepStoreTest, PointsThatAKilledProcessLeftAreInterrupted) {
   make("a.db", {{"p1", 0.0}});
-  SweepStore(path("a.db"), true).start("p1");
-  SweepStore a(path("a.db"), true);
+  SweepStore(path("a.db"), SweepAccess::go_on).start("p1");
+  SweepStore a(path("a.db"), SweepAccess::go_on);
   a.add({point("p1", 1)});
   EXPECT_EQ(a.state_of("p1"), "interrupted");
+}
+
+TEST_F(SweepStoreTest, FilesOfOtherProgramsStayByteForByteAsTheyWere) {
+  make("a.db", {{"p1", 0.0}});
+  make_foreign("notes.db");
+  std::ofstream(path("text.db")) << "a letter";
+  std::ofstream(path("empty.db"));
+  const auto before = files();
+  for (const char* name : {"notes.db", "text.db", "empty.db"}) {
+    for (const SweepAccess access : {SweepAccess::look, SweepAccess::go_on, SweepAccess::replace})
+      EXPECT_EQ(code_of([&] { SweepStore(path(name), access); }), "U021") << name;
+    EXPECT_EQ(code_of([&] { SweepStore(path(name), SweepAccess::create); }), "U013") << name;
+    EXPECT_EQ(code_of([&] { SweepStore(path("a.db"), SweepAccess::go_on).merge(path(name)); }), "U021")
+        << name;
+  }
+  EXPECT_EQ(files().at("notes.db"), before.at("notes.db"));
+  EXPECT_EQ(files().size(), before.size()) << "nothing was made beside them";
+}
+
+TEST_F(SweepStoreTest, LookAndBeingMergedLeaveAnotherSweepAsItWas) {
+  make("a.db", {{"p1", 1e6}, {"p2", 0.0}});
+  make("b.db", {});
+  const auto before = files();
+  {
+    SweepStore looked(path("a.db"), SweepAccess::look);
+    EXPECT_EQ(looked.points().rows.size(), 2u);
+    EXPECT_THROW(looked.start("p2"), InputError) << "it is open for reading only";
+  }
+  EXPECT_EQ(SweepStore(path("b.db"), SweepAccess::go_on).merge(path("a.db")), 1u);
+  EXPECT_EQ(files().at("a.db"), before.at("a.db"));
+  EXPECT_EQ(files().size(), before.size()) << "one file each, to be copied and read anywhere";
+}
+
+TEST_F(SweepStoreTest, LookAtWhatIsNotThereLeavesNoFile) {
+  EXPECT_EQ(code_of([&] { SweepStore(path("none.db"), SweepAccess::look); }), "U021");
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(SweepStoreTest, ReplacedSweepOfAnyVersionIsEmptyAndOfThisVersion) {
+  make("a.db", {{"p1", 1e6}});
+  Database(path("a.db"), Database::Mode::write).execute("PRAGMA user_version=99");
+  EXPECT_EQ(code_of([&] { SweepStore(path("a.db"), SweepAccess::look); }), "U021");
+  EXPECT_EQ(code_of([&] { SweepStore(path("a.db"), SweepAccess::go_on); }), "U021");
+  EXPECT_EQ(SweepStore(path("a.db"), SweepAccess::replace).count("done"), 0u);
+  EXPECT_TRUE(SweepStore(path("a.db"), SweepAccess::look).points().rows.empty());
+}
+
+TEST_F(SweepStoreTest, PointThatAKilledProcessLeftRunningIsStillToBeDone) {
+  make("a.db", {{"p1", 1e6}, {"p2", 0.0}, {"p3", 0.0}});
+  SweepStore(path("a.db"), SweepAccess::go_on).start("p2");
+  const SweepSummary summary = Lab().sweep({}, {.database = path("a.db")});
+  EXPECT_EQ(summary.done, 1u);
+  EXPECT_EQ(summary.left, 2u);
 }
 
 }  // namespace

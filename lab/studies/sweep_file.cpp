@@ -1,0 +1,129 @@
+#include "lab/studies/sweep_file.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include "lab/base/messages.h"
+
+namespace hwsim::lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint32_t kApplicationId = 0x68775357;  // "hwSW", in the header of the file
+constexpr std::uint32_t kSchemaVersion = 2;           // raised when a table or a column changes its meaning
+
+constexpr const char* kSchema = R"(
+CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE point (
+  id TEXT PRIMARY KEY, number INTEGER NOT NULL, scene TEXT NOT NULL, technique TEXT NOT NULL,
+  gpu TEXT NOT NULL, engine TEXT NOT NULL, width_px INTEGER NOT NULL, height_px INTEGER NOT NULL,
+  settings TEXT NOT NULL, run_file TEXT NOT NULL, gpu_file TEXT NOT NULL,
+  state TEXT NOT NULL, message TEXT NOT NULL DEFAULT '',
+  time_ms REAL, lo_ms REAL, hi_ms REAL, support TEXT, limiter TEXT, dram_mb REAL, memory_mib REAL,
+  shaded_samples INTEGER, from_cache INTEGER) WITHOUT ROWID;
+CREATE TABLE pass (
+  point_id TEXT NOT NULL REFERENCES point(id), ordinal INTEGER NOT NULL, name TEXT NOT NULL,
+  kind TEXT NOT NULL, time_ms REAL NOT NULL, limiter TEXT NOT NULL, dram_mb REAL NOT NULL,
+  PRIMARY KEY (point_id, ordinal)) WITHOUT ROWID;
+)";
+
+[[noreturn]] void refuse(const std::string& message) {
+  fail("U021", message, "", "another file: this one stays as it was");
+}
+
+/// The schema's version in the file's header (https://www.sqlite.org/fileformat.html), or none where the file
+/// is no sweep.
+std::optional<std::uint32_t> version_in_header(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return std::nullopt;  // a pipe would be waited for
+  std::array<char, 100> header{};
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(header.data(), header.size())) return std::nullopt;
+  const auto word = [&header](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<std::uint8_t>(header.at(at + i));
+    return value;
+  };
+  constexpr std::size_t kUserVersionAt = 60, kApplicationIdAt = 68;
+  const bool is_sweep =
+      std::memcmp(header.data(), "SQLite format 3", 16) == 0 && word(kApplicationIdAt) == kApplicationId;
+  return is_sweep ? std::optional(word(kUserVersionAt)) : std::nullopt;
+}
+
+bool has_tables(const std::string& path) {
+  Database database(path, Database::Mode::look);
+  Database::Statement tables(database,
+                             "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN "
+                             "('sweep', 'point', 'pass')");
+  return tables.step() && tables.integer(0) == 3;
+}
+
+void write_schema(Database& database) {
+  database.execute(kSchema);
+  database.execute(
+      fmt::format("PRAGMA application_id={}; PRAGMA user_version={}", kApplicationId, kSchemaVersion));
+}
+
+/// Appears under its name with all of its tables, or not at all; a file that another process made meanwhile
+/// stays.
+void make(const std::string& path) {
+  const std::string unfinished = path + ".tmp." + std::to_string(::getpid());
+  std::error_code ignored;
+  fs::remove(unfinished, ignored);  // a killed process with the same number may have left it
+  {
+    Database database(unfinished, Database::Mode::create);
+    Database::Transaction transaction(database);
+    write_schema(database);
+    transaction.commit();
+  }
+  const bool linked = ::link(unfinished.c_str(), path.c_str()) == 0;
+  const std::string why = linked ? "" : std::strerror(errno);
+  fs::remove(unfinished, ignored);
+  if (!linked) refuse("the database `" + path + "` cannot be made: " + why);
+}
+
+void empty(Database& database) {
+  Database::Transaction transaction(database);
+  database.execute("DROP TABLE pass; DROP TABLE point; DROP TABLE sweep");
+  write_schema(database);
+  transaction.commit();
+}
+
+void require_sweep(const std::string& path, bool any_version) {
+  const std::optional<std::uint32_t> version = version_in_header(path);
+  if (!version || !has_tables(path)) refuse("`" + path + "` is no database of `hwsim sweep`");
+  if (!any_version && *version != kSchemaVersion)
+    refuse(
+        fmt::format("`{}` is a sweep of version {}, this program reads {}", path, *version, kSchemaVersion));
+}
+
+}  // namespace
+
+Database open_sweep(const std::string& path, SweepAccess access) {
+  std::error_code error;
+  const bool is_there = fs::exists(path, error);
+  if (is_there && access == SweepAccess::create)
+    fail("U013", "`" + path + "` exists and is not overwritten", "",
+         "another --db, --resume to go on with it, or --force to replace it");
+  if (!is_there && access == SweepAccess::look)
+    fail("U021", "there is no database `" + path + "`", "",
+         "the name of a database that `hwsim sweep` wrote");
+  if (!is_there) make(path);
+  require_sweep(path, access == SweepAccess::replace);
+  if (access == SweepAccess::look) return Database(path, Database::Mode::look);
+  Database database(path, Database::Mode::write);
+  database.execute("PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL; PRAGMA foreign_keys=ON");
+  if (access == SweepAccess::replace) empty(database);
+  return database;
+}
+
+}  // namespace hwsim::lab
