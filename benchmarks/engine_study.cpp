@@ -2,11 +2,10 @@
 // of the event-driven engine, against that engine on the whole passes; the gain of each skip of the emulator,
 // and what replays cost.
 //   engine_study OUT_DIR [WIDTHxHEIGHT [SCENE,... [TECHNIQUE,...]]]
-// keeps traces in OUT_DIR/traces, writes OUT_DIR/engines.csv, engines.md, engines.svg and costs.md.
+// writes OUT_DIR/engines.csv, engines.md, engines.svg and costs.md.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -14,16 +13,13 @@
 #include <thread>
 
 #include "hwsim/engines/timing.h"
-#include "hwsim/gpu/gpu_keys.h"
-#include "hwsim/trace/trace_file.h"
+#include "lab/store/trace_store.h"
 #include "pipeline/emulate/emulator.h"
 #include "study_input.h"
 #include "study_report.h"
 
 namespace hwsim::benchmarks {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kScenes =
     "sponza_hall,grass,powerplant,dragon,wires,text_page,old_city,foliage,car_body,fur_ball,bamboo,metal,"
@@ -39,35 +35,28 @@ struct Options {
   std::string out;
   int width = 320, height = 180;
   std::vector<std::string> scenes, techniques;
-};
 
-GpuConfig gpu_of(const std::string& id) { return load_gpu(id, {}, {}, HWSIM_SOURCE_DIR "/configs/gpus"); }
+  lab::View view(const std::string& scene) const { return {.scene = scene, .resolution = {width, height}}; }
+};
 
 double milliseconds_since(std::chrono::steady_clock::time_point start) { return 1e3 * seconds_since(start); }
 
-/// From the cache of the study, or emulated: work does not depend on what the engines vary, so all GPUs get
-/// the trace of one whose features every technique can use.
-WorkTrace trace_of(const std::string& scene, const std::string& technique, const GpuConfig& gpu,
-                   const Options& o) {
-  char name[256];
-  std::snprintf(name, sizeof name, "%s_%s_%dx%d_%016llx.trace", scene.c_str(), technique.c_str(), o.width,
-                o.height, static_cast<unsigned long long>(trace_version()));
-  const fs::path path = fs::path(o.out) / "traces" / name;
-  if (std::ifstream in(path, std::ios::binary); in) {
-    const std::vector<char> bytes((std::istreambuf_iterator<char>(in)), {});
-    DecodedTrace decoded = decode_trace({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
-    if (decoded.trace) return std::move(*decoded.trace);
+/// A scene's traces, kept where `hwsim run` keeps them. Work does not depend on what the engines vary, so all
+/// GPUs get the trace of one whose features every technique can use.
+class SceneTraces {
+ public:
+  SceneTraces(lab::View view, GpuConfig gpu) : scene_(std::move(view), silent_), gpu_(std::move(gpu)) {}
+
+  WorkTrace of(const std::string& technique) {
+    return store_.frame(scene_, algos::parse_technique(technique), gpu_, {}, nullptr).emulation->trace;
   }
-  pipeline::EmulationOptions options;
-  options.jobs = 2;
-  WorkTrace trace = pipeline::emulate(study_frame(open_study_scene(scene), technique, gpu, o.width, o.height),
-                                      gpu.features, gpu.functional, options)
-                        .trace;
-  const std::vector<std::uint8_t> bytes = encode_trace(trace);
-  std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  return trace;
-}
+
+ private:
+  lab::Observer silent_;
+  lab::SceneView scene_;
+  GpuConfig gpu_;
+  lab::TraceStore store_{{.jobs = 2, .disk = true}, silent_};
+};
 
 /// The shortest of a few runs, for engines that take less than a millisecond.
 StudyRow time_row(const WorkTrace& trace, const GpuConfig& gpu, Engine engine, double sample, int runs) {
@@ -142,9 +131,8 @@ double emulation_ms(const pipeline::FrameGraph& graph, const GpuConfig& gpu,
 
 /// Emulation with each skip off, with all off, and with exact reuse distances, against all skips on.
 void study_skips(const Options& o, std::ostream& out) {
-  const GpuConfig gpu = gpu_of("gtx980");
-  const pipeline::FrameGraph graph =
-      study_frame(open_study_scene(o.scenes.front()), "msaa4x", gpu, o.width, o.height);
+  const GpuConfig gpu = study_gpu("gtx980");
+  const pipeline::FrameGraph graph = study_frame(open_study(o.view(o.scenes.front())), "msaa4x", gpu);
   pipeline::EmulationOptions options;
   const double base = emulation_ms(graph, gpu, options);
   out << "| emulation of " << o.scenes.front() << " msaa4x, " << o.width << "x" << o.height
@@ -167,7 +155,7 @@ void study_skips(const Options& o, std::ostream& out) {
 /// What replays of a cached trace cost.
 void study_replays(const WorkTrace& trace, std::ostream& out) {
   constexpr int kConfigs = 1000;
-  GpuConfig gpu = gpu_of("gtx980");
+  GpuConfig gpu = study_gpu("gtx980");
   for (const Engine engine : {Engine::roofline, Engine::queue}) {
     const auto start = std::chrono::steady_clock::now();
     double sum = 0.0;
@@ -192,23 +180,25 @@ void save(const std::string& path, const Write& write) {
 }
 
 int run(const Options& o) {
-  fs::create_directories(fs::path(o.out) / "traces");
-  const GpuConfig features = gpu_of("gtx980");
+  std::filesystem::create_directories(o.out);
+  const GpuConfig features = study_gpu("gtx980");
   std::vector<GpuConfig> gpus;
-  for (const char* id : kGpus) gpus.push_back(gpu_of(id));
+  for (const char* id : kGpus) gpus.push_back(study_gpu(id));
   std::vector<StudyRow> rows;
-  for (const std::string& scene : o.scenes)
+  for (const std::string& scene : o.scenes) {
+    SceneTraces traces(o.view(scene), features);
     for (const std::string& technique : o.techniques) {
-      const WorkTrace trace = trace_of(scene, technique, features, o);
+      const WorkTrace trace = traces.of(technique);
       time_trace(trace, scene, technique, gpus, rows);
       std::fprintf(stderr, "%s %s\n", scene.c_str(), technique.c_str());
       save(o.out + "/engines.csv", [&](std::ostream& out) { write_csv(rows, out); });
     }
+  }
   save(o.out + "/engines.md", [&](std::ostream& out) { write_table(rows, out); });
   save(o.out + "/engines.svg", [&](std::ostream& out) { write_svg(rows, out); });
   save(o.out + "/costs.md", [&](std::ostream& out) {
     study_skips(o, out);
-    study_replays(trace_of(o.scenes.front(), "msaa8x", features, o), out);
+    study_replays(SceneTraces(o.view(o.scenes.front()), features).of("msaa8x"), out);
   });
   for (const char* part : {"/engines.md", "/costs.md"})
     std::printf("%s\n", (std::ostringstream() << std::ifstream(o.out + part).rdbuf()).str().c_str());

@@ -105,19 +105,8 @@ struct Probe {
   algos::FrameRequest request;
   FrameGraph graph;
 
-  Probe(const std::string& technique, const ScenePointer& scene, const Study& study)
-      : request(request_of(scene, study)),
-        graph(algos::build_frame(algos::parse_technique(technique), request)) {}
-
-  static algos::FrameRequest request_of(const ScenePointer& scene, const Study& study) {
-    algos::FrameRequest request;
-    request.scene = scene;
-    request.width_px = study.width_px;
-    request.height_px = study.height_px;
-    request.shadows = false;
-    request.features = every_feature(8);
-    return request;
-  }
+  Probe(const std::string& technique, const algos::FrameRequest& asked)
+      : request(asked), graph(algos::build_frame(algos::parse_technique(technique), request)) {}
 
   pipeline::ImageId image_named(std::string_view name) const {
     for (std::size_t i = 0; i < graph.images().size(); ++i)
@@ -164,8 +153,8 @@ struct Probe {
   }
 };
 
-Events events_of(const std::string& technique, const ScenePointer& scene, const Study& study) {
-  Probe probe(technique, scene, study);
+Events events_of(const std::string& technique, const algos::FrameRequest& request, const Study& study) {
+  Probe probe(technique, request);
   if (technique == kReference)
     return probe.run(read_stencil, {probe.image_named("depth")}, {}, std::make_shared<int>(0), study.jobs);
   if (technique == kAggregates)
@@ -212,14 +201,17 @@ Means means(const Events& events, const Events& reference, const Study& study, d
           complex_worst / std::max(complex_waves, 1.0)};
 }
 
-void print_events(const ScenePointer& scene, const Study& study) {
+void print_events(const Study& study) {
+  algos::FrameRequest request =
+      open_study({.scene = study.scene, .resolution = {study.width_px, study.height_px}, .shadows = false});
+  request.features = every_feature(8);
   const std::vector<std::pair<const char*, const char*>> techniques = {
       {"reference", kReference}, {"agaa", kAggregates}, {"top", kTop}, {"merge", kMerge}};
   Events reference;
   double share = 0.0, wave_share = 0.0;
   std::printf("{");
   for (const auto& [name, technique] : techniques) {
-    const Events events = events_of(technique, scene, study);
+    const Events events = events_of(technique, request, study);
     if (reference.empty()) reference = events;
     const Means m = means(events, reference, study, &share, &wave_share);
     std::printf(R"("%s": {"frame": %.6f, "complex": %.6f, "waves": %.6f, "complex_waves": %.6f}, )", name,
@@ -251,7 +243,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    print_events(open_study_scene(study.scene), study);
+    print_events(study);
   } catch (const InputError& error) {
     return report(error);
   }

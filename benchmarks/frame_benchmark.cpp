@@ -12,7 +12,6 @@
 #include <cstring>
 
 #include "hwsim/engines/timing.h"
-#include "hwsim/gpu/gpu_keys.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/image/metrics.h"
 #include "study_input.h"
@@ -38,10 +37,7 @@ struct Row {
 };
 
 /// The documented GTX 980 with every feature that a technique may ask for, as `queue` times it.
-GpuConfig every_gpu() {
-  const std::vector<std::string> overlays = {HWSIM_SOURCE_DIR "/configs/overlays/coverage-samples.toml"};
-  return load_gpu("gtx980", overlays, {}, HWSIM_SOURCE_DIR "/configs/gpus");
-}
+GpuConfig every_gpu() { return study_gpu("gtx980", {"coverage-samples"}); }
 
 /// The options without one skip, or without all of them.
 pipeline::EmulationOptions without(std::size_t skip, int jobs) {
@@ -102,7 +98,7 @@ void print(const Row& row, const std::string& scene, const std::string& techniqu
 /// thread.
 void print_comparison(const std::string& scene_name, const GpuConfig& gpu, const Options& o) {
   const pipeline::FrameGraph graph =
-      study_frame(open_study_scene(scene_name), "none", gpu, o.width_px, o.height_px);
+      study_frame(open_study({.scene = scene_name, .resolution = {o.width_px, o.height_px}}), "none", gpu);
   double frame_s = 1e30, compare_s = 1e30;
   for (int i = 0; i < o.runs; ++i) {
     const auto start = std::chrono::steady_clock::now();
@@ -128,9 +124,9 @@ int run(const Options& o) {
   print_head(o);
   const GpuConfig gpu = every_gpu();
   for (const std::string& name : split_list(o.scenes)) {
-    const ScenePointer scene = open_study_scene(name);
+    const algos::FrameRequest request = open_study({.scene = name, .resolution = {o.width_px, o.height_px}});
     for (const std::string& technique : split_list(o.techniques))
-      print(measure(study_frame(scene, technique, gpu, o.width_px, o.height_px), gpu, o), name, technique, o);
+      print(measure(study_frame(request, technique, gpu), gpu, o), name, technique, o);
   }
   print_comparison(split_list(o.scenes).front(), gpu, o);
   std::printf("\npeak memory of the process: %.2f GiB; %d threads, %dx%d, best of %d\n", peak_gib(), o.jobs,

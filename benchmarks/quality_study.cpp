@@ -22,7 +22,6 @@
 #include "hwsim/gpu/every_feature.h"
 #include "pipeline/base/file_io.h"
 #include "pipeline/emulate/emulator.h"
-#include "pipeline/generate/registry.h"
 #include "pipeline/image/metrics.h"
 #include "pipeline/image/srgb_codes.h"
 #include "pipeline/open/scene_source.h"
@@ -30,6 +29,7 @@
 
 namespace hwsim::benchmarks {
 namespace {
+using algos::FrameRequest;
 using pipeline::Image;
 
 /// Selective supersampling wherever normals turn, at any cost; lists as far as 64x supersampling goes.
@@ -84,48 +84,38 @@ std::vector<std::string> asked_or(const char* const (&usual)[kCount], const Stud
                                   : study.techniques;
 }
 
-/// The scene seen by its first camera turned so that the picture moves by `pan_px`.
-ScenePointer panned(const ScenePointer& scene, glm::vec2 pan_px, const Study& study) {
-  if (pan_px == glm::vec2(0.0f)) return scene;
-  auto moved = std::make_shared<pipeline::Scene>(*scene);
+/// The frame seen by its first camera turned so that the picture moves by `pan_px`.
+FrameRequest panned(FrameRequest request, glm::vec2 pan_px) {
+  if (pan_px == glm::vec2(0.0f)) return request;
+  auto moved = std::make_shared<pipeline::Scene>(*request.scene);
+  request.scene = moved;
   pipeline::Camera& camera = moved->cameras.front();
   if (camera.orthographic) {
-    const float meters = 2.0f * camera.ortho_half_height_m / static_cast<float>(study.height_px);
+    const float meters = 2.0f * camera.ortho_half_height_m / static_cast<float>(request.height_px);
     camera.view_from_world =
         glm::translate(glm::mat4(1.0f), glm::vec3(pan_px.x * meters, -pan_px.y * meters, 0.0f)) *
         camera.view_from_world;
-    return moved;
+    return request;
   }
-  const float radians = 2.0f * std::tan(camera.fov_y_rad * 0.5f) / static_cast<float>(study.height_px);
+  const float radians = 2.0f * std::tan(camera.fov_y_rad * 0.5f) / static_cast<float>(request.height_px);
   const glm::mat4 turn = glm::rotate(glm::mat4(1.0f), -pan_px.x * radians, glm::vec3(0.0f, 1.0f, 0.0f)) *
                          glm::rotate(glm::mat4(1.0f), -pan_px.y * radians, glm::vec3(1.0f, 0.0f, 0.0f));
   camera.view_from_world = turn * camera.view_from_world;
-  return moved;
-}
-
-algos::FrameRequest request_of(const ScenePointer& scene, const Study& study) {
-  algos::FrameRequest request;
-  request.scene = scene;
-  request.width_px = study.width_px;
-  request.height_px = study.height_px;
-  request.shadows = false;  // a shadow map's own error hides the edges'
-  request.features = every_feature(8);
   return request;
 }
 
-Image frame(const std::string& technique, const ScenePointer& scene, const Study& study) {
+Image frame(const std::string& technique, const FrameRequest& request, const Study& study) {
   pipeline::EmulationOptions options;
   options.jobs = study.jobs;
-  const algos::FrameRequest request = request_of(scene, study);
   const pipeline::FrameGraph graph = algos::build_frame(algos::parse_technique(technique), request);
   return pipeline::emulate(graph, request.features, FunctionalConfig{}, options).color;
 }
 
-Image truth(const ScenePointer& scene, int samples, const Study& study) {
+Image truth(const FrameRequest& request, int samples, const Study& study) {
   algos::ReferenceFrameOptions options;
   options.samples = samples;
   options.jobs = study.jobs;
-  return algos::render_reference_frame(request_of(scene, study), options);
+  return algos::render_reference_frame(request, options);
 }
 
 float shown_luma(const glm::vec4& linear) {
@@ -159,7 +149,8 @@ double masked_rmse(const Image& image, const Image& reference, const std::vector
   return count == 0 ? std::nan("") : std::sqrt(sum / static_cast<double>(count));
 }
 
-void errors(const std::string& name, const ScenePointer& scene, const Image& reference, const Study& study) {
+void errors(const std::string& name, const FrameRequest& request, const Image& reference,
+            const Study& study) {
   const std::vector<char> bright = highlights(reference);
   const auto share =
       static_cast<double>(std::count(bright.begin(), bright.end(), 1)) / static_cast<double>(bright.size());
@@ -169,7 +160,7 @@ void errors(const std::string& name, const ScenePointer& scene, const Image& ref
       name.c_str(), 100.0 * share);
   for (const std::string& technique : asked_or(kCompared, study)) {
     try {
-      const Image image = frame(technique, scene, study);
+      const Image image = frame(technique, request, study);
       const pipeline::ImageError e = pipeline::compare(image, reference);
       std::printf("| `%s` | %.2f | %.4f | %.4f | %.4f | %.4f |\n", technique.c_str(), e.psnr_db, e.rmse,
                   e.ssim, e.flip_mean, masked_rmse(image, reference, bright));
@@ -182,12 +173,12 @@ void errors(const std::string& name, const ScenePointer& scene, const Image& ref
 
 /// The variance over the frames of what differs from each frame's own truth, as a standard deviation: an
 /// error that stays where it is does not flicker.
-void stability(const std::string& name, const ScenePointer& scene, const Study& study) {
-  std::vector<ScenePointer> views;
+void stability(const std::string& name, const FrameRequest& request, const Study& study) {
+  std::vector<FrameRequest> views;
   std::vector<Image> references;
   for (int i = 0; i < study.frames; ++i) {
     const float t = static_cast<float>(i) / static_cast<float>(study.frames);
-    views.push_back(panned(scene, {t, std::fmod(3.0f * t, 1.0f)}, study));
+    views.push_back(panned(request, {t, std::fmod(3.0f * t, 1.0f)}));
     references.push_back(truth(views.back(), std::max(16, study.samples / 4), study));
   }
   std::printf("\n### %s, %d frames\n\n| technique | flicker | of `none` |\n|---|---|---|\n", name.c_str(),
@@ -228,7 +219,7 @@ double contrast(const Image& image) {
 
 /// What filters do to an image that needs none.
 void kept(const std::string& name, const pipeline::RawImage& smooth, const Study& study) {
-  algos::FrameRequest request;
+  FrameRequest request;
   request.scene = std::make_shared<const pipeline::Scene>();
   request.image = std::make_shared<const pipeline::RawImage>(smooth);
   request.width_px = smooth.width;
@@ -295,13 +286,16 @@ void run(const std::string& name, const Study& study) {
     kept(shown, pipeline::srgb_codes(pipeline::read_image(name)), study);
     return;
   }
-  const ScenePointer scene = open_study_scene(name);
+  FrameRequest request = open_study({.scene = name,
+                                     .resolution = {study.width_px, study.height_px},
+                                     .shadows = false});  // a shadow map's own error hides the edges'
+  request.features = every_feature(8);
   if (study.errors || study.kept) {
-    const Image reference = truth(scene, study.samples, study);
-    if (study.errors) errors(shown, scene, reference, study);
+    const Image reference = truth(request, study.samples, study);
+    if (study.errors) errors(shown, request, reference, study);
     if (study.kept) kept(shown, pipeline::srgb_codes(reference), study);
   }
-  if (study.stability) stability(shown, scene, study);
+  if (study.stability) stability(shown, request, study);
 }
 
 }  // namespace

@@ -11,8 +11,8 @@
 
 #include "benchmarks/pass_programs.h"
 #include "pipeline/emulate/emulator.h"
-#include "pipeline/open/scene_source.h"
 #include "pipeline/shade/mesh_vertex.h"
+#include "study_input.h"
 #ifdef HWSIM_HAVE_LLVMPIPE
 #include "oracle/llvmpipe.h"
 #endif
@@ -72,7 +72,7 @@ Workload random_triangles() {
 Workload scene_workload(const std::string& source) {
   Workload w;
   w.name = source.substr(source.find_last_of('/') + 1);
-  w.scene = std::make_shared<Scene>(open_scene(source, default_cache_directory()));
+  w.scene = std::make_shared<Scene>(*open_study({.scene = source, .resolution = {kWidth, kHeight}}).scene);
   const Camera& camera = w.scene->cameras.front();
   w.clip_from_world = clip_from_view(camera, static_cast<float>(kWidth) / kHeight) * camera.view_from_world;
   w.cull = CullMode::back;

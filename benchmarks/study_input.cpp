@@ -3,8 +3,9 @@
 #include <cstdio>
 #include <sstream>
 
-#include "algos/techniques.h"
-#include "pipeline/open/scene_source.h"
+#include "hwsim/gpu/gpu_keys.h"
+#include "lab/base/files.h"
+#include "lab/store/scene_view.h"
 
 namespace hwsim::benchmarks {
 
@@ -15,20 +16,23 @@ std::vector<std::string> split_list(const std::string& list) {
   return parts;
 }
 
-ScenePointer open_study_scene(const std::string& name) {
-  return std::make_shared<const pipeline::Scene>(
-      pipeline::open_scene(name, pipeline::default_cache_directory() + "/scenes"));
+algos::FrameRequest open_study(const lab::View& view) {
+  lab::Observer silent;
+  return lab::SceneView(view, silent).frame_request();
 }
 
-pipeline::FrameGraph study_frame(const ScenePointer& scene, const std::string& technique,
-                                 const GpuConfig& gpu, int width_px, int height_px) {
-  algos::FrameRequest request;
-  request.scene = scene;
-  request.width_px = width_px;
-  request.height_px = height_px;
+pipeline::FrameGraph study_frame(algos::FrameRequest request, const std::string& technique,
+                                 const GpuConfig& gpu) {
   request.features = gpu.features;
   request.functional = gpu.functional;
   return algos::build_frame(algos::parse_technique(technique), request);
+}
+
+GpuConfig study_gpu(const std::string& id, const std::vector<std::string>& overlays) {
+  std::vector<std::string> files;
+  for (const std::string& name : overlays)
+    files.push_back(lab::config_directory() + "/overlays/" + name + ".toml");
+  return load_gpu(id, files, {}, lab::gpu_directory());
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {

@@ -1,28 +1,29 @@
 #pragma once
 // What the studies and benchmarks of whole frames open the same way.
 #include <chrono>
-#include <memory>
 #include <string>
 #include <vector>
 
+#include "algos/techniques.h"
 #include "hwsim/base/diagnostics.h"
 #include "hwsim/gpu/gpu_config.h"
-#include "pipeline/graph/frame_graph.h"
-#include "pipeline/scene/scene.h"
+#include "lab/request/request.h"
 
 namespace hwsim::benchmarks {
-
-using ScenePointer = std::shared_ptr<const pipeline::Scene>;
 
 /// The parts of a list between its commas.
 std::vector<std::string> split_list(const std::string& list);
 
-/// A generator's name with its parameters, or a glTF file. Throws InputError.
-ScenePointer open_study_scene(const std::string& name);
+/// The frame of a view, its scene loaded as `hwsim run` loads it. The caller sets what the GPU has. Throws
+/// InputError.
+algos::FrameRequest open_study(const lab::View& view);
 
-/// The frame of a technique, shadow map included, for what the GPU has. Throws InputError.
-pipeline::FrameGraph study_frame(const ScenePointer& scene, const std::string& technique,
-                                 const GpuConfig& gpu, int width_px, int height_px);
+/// The passes of a technique for that frame on a GPU. Throws InputError.
+pipeline::FrameGraph study_frame(algos::FrameRequest request, const std::string& technique,
+                                 const GpuConfig& gpu);
+
+/// A GPU as documented, without calibration, with overlays of configs/overlays by name. Throws InputError.
+GpuConfig study_gpu(const std::string& id, const std::vector<std::string>& overlays = {});
 
 double seconds_since(std::chrono::steady_clock::time_point start);
 
