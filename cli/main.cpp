@@ -1,10 +1,15 @@
+#include <fcntl.h>
 #include <malloc.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 
 #include "cli/arguments/arguments.h"
 #include "cli/commands/commands.h"
+#include "cli/terminal/answer.h"
 #include "lab/base/messages.h"
 #include "lab/point/simulate.h"
 
@@ -26,7 +31,7 @@ CommonOptions common_of(const Command& command) {
 
 ExitStatus dispatch(const Command& command, Context& context) {
   return std::visit(Overloaded{[](const PrintText& text) {
-                                 std::fputs(text.text.c_str(), stdout);
+                                 write_output(text.text);
                                  return ExitStatus::done;
                                },
                                [&](const RunOptions& o) { return run(o, context); },
@@ -88,10 +93,19 @@ void keep_freed_memory() {
   mallopt(M_TRIM_THRESHOLD, 64 * kMib);
 }
 
+/// A reader that goes away ends no work, and no file gets the number of a stream that the caller closed:
+/// answers would be written into it.
+void guard_streams() {
+  std::signal(SIGPIPE, SIG_IGN);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) < 0) std::_Exit(1);
+}
+
 }  // namespace
 }  // namespace hwsim::cli
 
 int main(int argc, char** argv) {
+  hwsim::cli::guard_streams();
   hwsim::cli::keep_freed_memory();
   return static_cast<int>(hwsim::cli::run_program(argc, argv));
 }

@@ -2,11 +2,11 @@
 // asked for when the user presses the key, so that they are those of the installed files.
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <map>
 
 #include "cli/arguments/arguments.h"
 #include "cli/commands/commands.h"
+#include "cli/terminal/answer.h"
 #include "lab/base/messages.h"
 
 namespace hwsim::cli {
@@ -165,7 +165,7 @@ ExitStatus completion(const CompletionOptions& options, Context&) {
   if (options.shell == "fish") script = fish_script(commands);
   if (script.empty())
     fail_usage("U003", "no completion for `" + options.shell + "`, only for bash, zsh and fish");
-  std::fputs(script.c_str(), stdout);
+  write_output(script);
   return ExitStatus::done;
 }
 

@@ -1,5 +1,3 @@
-#include <cstdio>
-
 #include "cli/commands/commands.h"
 #include "cli/terminal/answer.h"
 #include "lab/base/messages.h"
@@ -8,8 +6,6 @@
 
 namespace hwsim::cli {
 namespace {
-
-void write_text(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
 
 /// Every file is looked at before the first mistake is reported. A file of kind "run" is one too.
 ExitStatus check(const ConfigOptions& options) {
@@ -48,12 +44,12 @@ ExitStatus config(const ConfigOptions& options, Context& context) {
       return check(options);
     case Action::show:
       if (options.common.formats.empty())
-        write_text(show(load(0), options.origin));
+        write_output(show(load(0), options.origin));
       else
         print({.table = key_table(load(0), options.origin)}, options.common);
       break;
     case Action::schema:
-      write_text(schema_of(options.names));
+      write_output(schema_of(options.names));
       break;
     case Action::diff: {
       const Table table = difference_table(load(0), load(1));

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
 
 #include "cli/arguments/arguments.h"
 #include "cli/commands/commands.h"
@@ -28,8 +27,7 @@ ExitStatus explain(std::string topic) {
   topic[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(topic[0])));
   for (const ErrorCode& code : error_codes())
     if (code.code == topic) {
-      std::printf("%s: %s\n\n%s\n", topic.c_str(), std::string(code.title).c_str(),
-                  std::string(code.explanation).c_str());
+      write_output(topic + ": " + std::string(code.title) + "\n\n" + std::string(code.explanation) + "\n");
       return ExitStatus::done;
     }
   fail_usage("U014", "no message has the code `" + topic + "`", "", "`hwsim help` lists the codes");
@@ -44,7 +42,7 @@ ExitStatus help(const HelpOptions& options, Context&) {
   }
   if (looks_like_code(options.topic)) return explain(options.topic);
   if (const auto text = help_text(options.topic)) {
-    std::fputs(text->c_str(), stdout);
+    write_output(*text);
     return ExitStatus::done;
   }
   std::vector<std::string> names;

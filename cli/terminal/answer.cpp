@@ -1,9 +1,13 @@
 #include "cli/terminal/answer.h"
 
-#include <cstdio>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "lab/base/files.h"
+#include "lab/base/messages.h"
 
 namespace hwsim::cli {
 namespace {
@@ -24,17 +28,29 @@ std::string render_as(const Answer& answer, Format format) {
 
 }  // namespace
 
+void write_output(std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(STDOUT_FILENO, text.data(), text.size());
+    if (written > 0)
+      text.remove_prefix(static_cast<std::size_t>(written));
+    else if (errno == EPIPE)
+      return;
+    else if (errno != EINTR)
+      lab::fail("U010", "cannot write to standard output: " + std::string(std::strerror(errno)), "",
+                "send it to a file or a terminal that can be written and has space");
+  }
+}
+
 void print(const Answer& answer, const CommonOptions& options) {
   const std::vector<FormatRequest> requests =
       options.formats.empty() ? std::vector<FormatRequest>{FormatRequest{}} : options.formats;
   for (const FormatRequest& request : requests) {
     const std::string text = render_as(answer, request.format);
     if (request.file.empty())
-      std::fwrite(text.data(), 1, text.size(), stdout);
+      write_output(text);
     else
       lab::write_file(request.file, text);
   }
-  std::fflush(stdout);
 }
 
 }  // namespace hwsim::cli

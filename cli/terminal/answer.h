@@ -2,6 +2,7 @@
 // What a command prints: one table, in each of the shapes that were asked for.
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 
 #include "cli/arguments/options.h"
 #include "lab/base/table.h"
@@ -16,7 +17,11 @@ struct Answer {
   const nlohmann::ordered_json* json = nullptr;  ///< none: to_json(table)
 };
 
-/// Writes each requested shape, to standard output or to its file.
+/// Writes to standard output. Throws InputError U010 when it cannot be written. What nobody reads any more is
+/// dropped, as in `hwsim list gpus | head -1`: the reader had enough, and the work goes on.
+void write_output(std::string_view text);
+
+/// Writes each requested shape, to standard output or to its file. Throws InputError U010.
 void print(const Answer& answer, const CommonOptions& options);
 
 }  // namespace hwsim::cli
