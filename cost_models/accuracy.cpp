@@ -1,10 +1,10 @@
 #include "cost_models/accuracy.h"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 
+#include "cost_models/table_number.h"
 #include "hwsim/base/csv.h"
 #include "hwsim/base/diagnostics.h"
 
@@ -49,11 +49,7 @@ bool has_figure(const Statement& s) {
   return is_split(s.split) && find(kSplitFigures, s.figure) != nullptr;
 }
 
-double number(const std::string& text) {
-  double value = std::nan("");
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? value : std::nan("");
-}
+double number(const std::string& text) { return table_number(text).value_or(std::nan("")); }
 
 std::string about(const std::vector<std::string>& papers) {
   std::string names;

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <optional>
 
+#include "cost_models/table_number.h"
 #include "hwsim/base/csv.h"
 #include "hwsim/base/diagnostics.h"
 
@@ -26,13 +26,6 @@ std::optional<Split> split_of(const std::string& name) {
   for (int s = 0; s < kSplitCount; ++s)
     if (split_name(static_cast<Split>(s)) == name) return static_cast<Split>(s);
   return std::nullopt;
-}
-
-double positive(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  return whole && std::isfinite(value) && value > 0.0 ? value : 0.0;
 }
 
 }  // namespace
@@ -67,10 +60,10 @@ std::vector<FoldOptimum> load_fold_optima(const std::string& path, const std::ve
     for (const Parameter& p : parameters) {
       const auto column = std::find(file.header.begin(), file.header.end(), p.id()) - file.header.begin();
       const bool named = column < static_cast<std::ptrdiff_t>(cells.size());
-      const double value = named ? positive(cells[static_cast<std::size_t>(column)]) : p.start;
-      if (value <= 0.0)
-        refuse("`" + cells[static_cast<std::size_t>(column)] + "` is no value of `" + p.id() + "`");
-      optimum.log_values.push_back(std::log(value));
+      const std::optional<double> value =
+          named ? table_number(cells[static_cast<std::size_t>(column)], {1e-300, 1e300}) : p.start;
+      if (!value) refuse("`" + cells[static_cast<std::size_t>(column)] + "` is no value of `" + p.id() + "`");
+      optimum.log_values.push_back(std::log(*value));
     }
     optima.push_back(std::move(optimum));
   }

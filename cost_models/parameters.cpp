@@ -1,10 +1,10 @@
 #include "cost_models/parameters.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <set>
 
+#include "cost_models/table_number.h"
 #include "hwsim/base/csv.h"
 #include "hwsim/base/diagnostics.h"
 #include "hwsim/gpu/gpu_keys.h"
@@ -56,11 +56,9 @@ class Reader {
   double number(std::string_view column, double from_file) {
     const std::string& t = text(column);
     if (t == "file") return from_file;
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(t.data(), t.data() + t.size(), value);
-    if (error != std::errc() || end != t.data() + t.size() || !std::isfinite(value))
-      problem("`" + t + "` is no number for " + std::string(column));
-    return value;
+    const std::optional<double> value = table_number(t);
+    if (!value) problem("`" + t + "` is no number for " + std::string(column));
+    return value.value_or(0.0);
   }
 
   Parameter read() {

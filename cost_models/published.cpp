@@ -1,11 +1,10 @@
 #include "cost_models/published.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <set>
 
+#include "cost_models/table_number.h"
 #include "hwsim/base/csv.h"
 #include "hwsim/base/diagnostics.h"
 
@@ -39,6 +38,21 @@ Diagnostic mapping_problem(const std::string& message, const std::string& path, 
   return problem;
 }
 
+constexpr NumberRange kPixels{1.0, 16384.0, true}, kRate{1.0, 64.0, true}, kLights{0.0, 4096.0, true},
+    kLightRange{1e-6, 1e6}, kRepeat{1.0, 1e6};
+
+constexpr std::string_view kNotPrinted = "NA";
+
+Diagnostic number_problem(const std::string& text, const std::string& column, const std::string& expected,
+                          const CsvFile& file, std::size_t row) {
+  Diagnostic problem{.code = "M010", .message = "`" + text + "` is no value of `" + column + "`"};
+  problem.place.file = file.path;
+  problem.place.line = file.lines[row];
+  problem.place.column = 1;
+  problem.help = "write " + expected;
+  return problem;
+}
+
 /// A mapping file: its first `conditions` columns are matched with a row ("*" is anything), the others are
 /// what the first matching line says.
 class Rules {
@@ -64,6 +78,20 @@ class Rules {
     return line[file_.column(column)];
   }
 
+  void check_numbers(std::string_view column, const NumberRange& range,
+                     std::vector<Diagnostic>& problems) const {
+    for (std::size_t i = 0; i < file_.rows.size(); ++i) {
+      const std::string& text = file_.rows[i][file_.column(column)];
+      if (!table_number(text, range))
+        problems.push_back(number_problem(text, std::string(column), range_text(range), file_, i));
+    }
+  }
+
+  /// After `check_numbers`.
+  double number(const std::vector<std::string>& line, std::string_view column) const {
+    return table_number(text(line, column)).value();
+  }
+
   void report_unused(std::vector<Diagnostic>& problems) const {
     for (std::size_t i = 0; i < used_.size(); ++i)
       if (!used_[i])
@@ -76,12 +104,6 @@ class Rules {
   std::size_t conditions_;
   std::vector<bool> used_;
 };
-
-double number(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? value : 0.0;
-}
 
 RowUse use_from_name(const std::string& name, const std::string& path) {
   for (const RowUse use : {RowUse::fitted, RowUse::derived, RowUse::count, RowUse::excluded, RowUse::claim})
@@ -118,7 +140,12 @@ class Mapper {
         gpus_(read_csv((folder / "gpus.csv").string())),
         scenes_((folder / "scenes.csv").string(), 4),
         techniques_((folder / "techniques.csv").string(), 4),
-        passes_((folder / "passes.csv").string(), 3) {}
+        passes_((folder / "passes.csv").string(), 3) {
+    scenes_.check_numbers("point_lights", kLights, problems_);
+    scenes_.check_numbers("light_range", kLightRange, problems_);
+    techniques_.check_numbers("repeat", kRepeat, problems_);
+    if (!problems_.empty()) throw InputError(problems_);
+  }
 
   std::vector<Cell> run() {
     std::vector<Cell> cells;
@@ -141,6 +168,9 @@ class Mapper {
     }
     set_value(cell);
     if (cell.use != RowUse::claim) cell.has_run = set_run(cell);
+    const bool needs_value = cell.use == RowUse::fitted || cell.use == RowUse::count;
+    if (needs_value && row.printed == kNotPrinted)
+      problems_.push_back({.code = "M002", .message = "row " + row.id() + " has no value to be fitted"});
     if (!cell.has_run && (cell.use == RowUse::fitted || cell.use == RowUse::count))
       problems_.push_back({.code = "M002", .message = "row " + row.id() + " is mapped to no run"});
     return cell;
@@ -166,21 +196,21 @@ class Mapper {
     RunSpec& run = cell.run;
     run.scene = scenes_.text(*scene, "stand_in");
     run.camera = scenes_.text(*scene, "camera");
-    run.point_lights = static_cast<int>(number(scenes_.text(*scene, "point_lights")));
-    run.light_range = number(scenes_.text(*scene, "light_range"));
+    run.point_lights = static_cast<int>(scenes_.number(*scene, "point_lights"));
+    run.light_range = scenes_.number(*scene, "light_range");
     run.lights = scenes_.text(*scene, "lights");
     run.shadows = scenes_.text(*scene, "shadows") == "yes";
     run.technique = filled(techniques_.text(*technique, "template"), row);
-    cell.repeat = std::max(1.0, number(techniques_.text(*technique, "repeat")));
+    cell.repeat = techniques_.number(*technique, "repeat");
     for (const auto& line : gpus_.rows)
       if (line[0] == row.gpu) run.gpu = line[1];
     const auto x = row.resolution.find('x');
     if (run.gpu.empty() || x == std::string::npos) return false;
-    run.width_px = static_cast<int>(number(row.resolution.substr(0, x)));
-    run.height_px = static_cast<int>(number(row.resolution.substr(x + 1)));
+    run.width_px = static_cast<int>(table_number(row.resolution.substr(0, x)).value());
+    run.height_px = static_cast<int>(table_number(row.resolution.substr(x + 1)).value());
     cell.scene_group = run.scene;
     cell.passes = passes_.text(*pass, "trace_passes");
-    cell.rate = std::max(1.0, number(row.msaa));
+    cell.rate = table_number(row.msaa).value_or(1.0);
     return true;
   }
 
@@ -191,6 +221,30 @@ class Mapper {
   Rules scenes_, techniques_, passes_;
   std::vector<Diagnostic> problems_;
 };
+
+/// The values that a quantity may have. A time is positive: its logarithm is fitted.
+NumberRange range_of(const std::string& quantity) {
+  if (quantity == "claim") return {-1e12, 1e12};
+  if (quantity.starts_with("percent_change_")) return {-99.99, 1e6};
+  return {1e-9, 1e12};
+}
+
+bool is_resolution(std::string_view text) {
+  const auto x = text.find('x');
+  return x != std::string_view::npos && table_number(text.substr(0, x), kPixels) &&
+         table_number(text.substr(x + 1), kPixels);
+}
+
+void check_numbers(const PublishedRow& row, const CsvFile& file, std::size_t at,
+                   std::vector<Diagnostic>& problems) {
+  const NumberRange range = range_of(row.quantity);
+  if (row.printed != kNotPrinted && !table_number(row.printed, range))
+    problems.push_back(number_problem(row.printed, "value", range_text(range) + ", or NA", file, at));
+  if (!row.resolution.empty() && !is_resolution(row.resolution))
+    problems.push_back(number_problem(row.resolution, "resolution", "WIDTHxHEIGHT, or nothing", file, at));
+  if (!row.msaa.empty() && !table_number(row.msaa, kRate))
+    problems.push_back(number_problem(row.msaa, "msaa", range_text(kRate) + ", or nothing", file, at));
+}
 
 bool matches_one(std::string_view pattern, std::string_view pass) {
   if (pattern.ends_with('*')) return pass.starts_with(pattern.substr(0, pattern.size() - 1));
@@ -229,6 +283,7 @@ std::vector<PublishedRow> load_published(const std::string& published_dir) {
   for (const fs::directory_entry& entry : fs::directory_iterator(published_dir))
     if (entry.path().extension() == ".csv") files.insert(entry.path());
   std::vector<PublishedRow> rows;
+  std::vector<Diagnostic> problems;
   for (const fs::path& path : files) {
     const CsvFile file = read_csv(path.string());
     for (std::size_t i = 0; i < file.rows.size(); ++i) {
@@ -249,10 +304,12 @@ std::vector<PublishedRow> load_published(const std::string& published_dir) {
                        text("value"),
                        0.0,
                        text("note")};
-      row.value = number(row.printed);
+      check_numbers(row, file, i, problems);
+      row.value = table_number(row.printed).value_or(0.0);
       rows.push_back(std::move(row));
     }
   }
+  if (!problems.empty()) throw InputError(problems);
   return rows;
 }
 

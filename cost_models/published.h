@@ -59,11 +59,13 @@ struct Cell {
   double rate = 1.0;    ///< samples a pixel of the row, for rate extrapolation
 };
 
-/// Rows of every table, in the order of files and lines. Throws InputError for damaged files.
+/// Rows of every table, in the order of files and lines. Throws InputError for damaged files, and M010 for
+/// values, resolutions and rates that are no numbers in their range ("NA" is read as 0).
 std::vector<PublishedRow> load_published(const std::string& published_dir);
 
-/// Uses and runs of all rows. Throws InputError M001 for mapping rules that match no row, and M002 for a time
-/// that no rule maps to a run.
+/// Uses and runs of all rows. Throws InputError M001 for mapping rules that match no row, M002 for a time
+/// that no rule maps to a run or that has no value, and M010 for numbers of the mapping outside of their
+/// range.
 std::vector<Cell> map_rows(const std::vector<PublishedRow>& rows, const std::string& published_dir);
 
 /// Whether a pass of a trace is one of those that `patterns` names.

@@ -164,6 +164,11 @@ constexpr ErrorCode kCodes[] = {
      "and "
      "passes, or a reason in uses.csv why it is left out."},
 
+    {"M010", "number of a published table",
+     "A value, resolution or rate of configs/published, or a number of its mapping, is no finite number in "
+     "its "
+     "range. Times and counts are positive, percentages above -100; NA says that the document prints none."},
+
     {"M003", "parameter of the fit",
      "configs/calibration/parameters.csv declares scope, name, start, range and prior of each number that "
      "the "

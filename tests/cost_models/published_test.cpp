@@ -1,10 +1,13 @@
 // The published tables as data: every row is there, has a use with a reason, and stands for a run.
 #include "cost_models/published.h"
+#include "hwsim/base/diagnostics.h"
 #include "support/places.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <set>
 
@@ -41,6 +44,33 @@ TEST(Published, EveryRowIsLoaded) {
   EXPECT_EQ(rows["tables"], 318);
   EXPECT_EQ(rows["claims"], 113);
   EXPECT_EQ(numbers, 317);
+}
+
+/// The message that a copy of the tables ends in, of which one value was changed; empty where it is read.
+std::string message_for(const std::string& value) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(testing::TempDir()) / "hwsim_published_numbers";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  std::ofstream(folder / "t.csv")
+      << "document,gpu,resolution,scene,view,technique,msaa,surfaces_or_aggregates,lighting,pass,quantity,"
+         "value,note\nD,G,1280x720,S,V,T,8,,,frame,time_ms,1.5,\nD,G,1280x720,S,V,T,8,,,frame,time_ms," +
+             value + ",\n";
+  try {
+    load_published(folder.string());
+  } catch (const InputError& error) {
+    const Diagnostic& problem = error.diagnostics().front();
+    EXPECT_EQ(problem.place.line, 3);
+    EXPECT_FALSE(problem.help.empty());
+    return problem.code + " " + problem.message;
+  }
+  return "";
+}
+
+TEST(Published, ValueThatIsNoFiniteNumberInItsRangeIsRefusedWithItsLine) {
+  for (const char* value : {"nan", "inf", "-inf", "-5", "0", "abc", "1.5x", "", "1e400", " 2", "0x10"})
+    EXPECT_EQ(message_for(value), "M010 `" + std::string(value) + "` is no value of `value`");
+  for (const char* value : {"2", "0.5", "1e3", "NA"}) EXPECT_EQ(message_for(value), "") << value;
 }
 
 TEST(Published, EveryRowHasAUseAndWhatIsNotFittedAReason) {
