@@ -101,7 +101,7 @@ Calibration make_calibration(const Experiment& experiment, const Validation& val
   Calibration c;
   const Fit& fit = validation.fit;
   for (std::size_t i = 0; i < experiment.parameters.size(); ++i) {
-    const Parameter& p = experiment.parameters[i];
+    const FittedParameter& p = experiment.parameters[i];
     const Estimate& e = fit.estimates[i];
     c.parameters.push_back({p.scope, p.member, p.name, p.unit, p.start, p.low, p.high, e.value, e.low90,
                             e.high90, e.used, e.at_bound, e.identified});
@@ -190,10 +190,10 @@ Calibration calibration_from_json(const std::string& text, const std::string& pa
   damaged(path, error.what());
 }
 
-std::optional<Fit> fit_of(const Calibration& calibration, const std::vector<Parameter>& parameters) {
+std::optional<Fit> fit_of(const Calibration& calibration, const std::vector<FittedParameter>& parameters) {
   const bool same =
       std::equal(parameters.begin(), parameters.end(), calibration.parameters.begin(),
-                 calibration.parameters.end(), [](const Parameter& a, const CalibratedParameter& b) {
+                 calibration.parameters.end(), [](const FittedParameter& a, const CalibratedParameter& b) {
                    return a.scope == b.scope && a.member == b.member && a.name == b.name;
                  });
   if (!same) return std::nullopt;

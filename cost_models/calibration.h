@@ -47,7 +47,7 @@ std::string to_json(const Calibration& calibration);
 Calibration calibration_from_json(const std::string& text, const std::string& path);
 
 /// The fit that a calibration holds, for the same parameters; none when they were declared differently.
-std::optional<Fit> fit_of(const Calibration& calibration, const std::vector<Parameter>& parameters);
+std::optional<Fit> fit_of(const Calibration& calibration, const std::vector<FittedParameter>& parameters);
 
 struct FrameInterval {
   Support support = Support::uncalibrated;

@@ -17,7 +17,7 @@ std::vector<std::size_t> free_parameters(const Experiment& experiment, const std
                                          const std::vector<double>& log_values) {
   std::vector<std::size_t> free;
   for (std::size_t i = 0; i < used.size(); ++i) {
-    const Parameter& p = experiment.parameters[i];
+    const FittedParameter& p = experiment.parameters[i];
     const double margin = kBoundDistance * std::log(p.high / p.low);
     if (used[i] && log_values[i] > std::log(p.low) + margin && log_values[i] < std::log(p.high) - margin)
       free.push_back(i);
@@ -81,7 +81,7 @@ double condition_of(const Eigen::MatrixXd& information) {
 }
 
 /// Slope and curvature of the prior's part of the cost.
-std::pair<double, double> prior_terms(const Parameter& p, double log_value) {
+std::pair<double, double> prior_terms(const FittedParameter& p, double log_value) {
   if (p.prior_log_sd <= 0.0) return {0.0, 0.0};
   const double variance = p.prior_log_sd * p.prior_log_sd;
   return {(log_value - std::log(p.start)) / variance, 1.0 / variance};
@@ -119,7 +119,7 @@ double gain_of(const Experiment& experiment, const std::vector<bool>& used,
   double gain = free.empty() ? 0.0 : 0.5 * slope.dot(inverse(curvature) * slope);
   for (std::size_t k = 0; k < bound.size(); ++k) {
     if (!bound[k]) continue;
-    const Parameter& p = experiment.parameters[k];
+    const FittedParameter& p = experiment.parameters[k];
     const auto [prior_slope, prior_curvature] = prior_terms(p, fit.log_values[k]);
     const double g = linear.slope[k] / noise + prior_slope, h = linear.curvature[k] / noise + prior_curvature;
     const bool at_low = fit.log_values[k] < 0.5 * (std::log(p.low) + std::log(p.high));

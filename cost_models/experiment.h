@@ -38,7 +38,7 @@ struct Experiment {
   std::vector<Cell> cells;  ///< every row of every table
   std::vector<GpuConfig> gpus;
   std::vector<Replay> replays;
-  std::vector<Parameter> parameters;
+  std::vector<FittedParameter> parameters;
   std::vector<NotRun> not_run;
   bool predicted(std::size_t cell) const;  ///< some replay predicts it
   std::size_t gpu_index(const std::string& id) const;

@@ -146,7 +146,7 @@ class Solve {
   }
 
   void add_parameter(ceres::Problem& problem, std::size_t i) {
-    const Parameter& p = experiment_.parameters[i];
+    const FittedParameter& p = experiment_.parameters[i];
     problem.AddParameterBlock(&values_[i], 1);
     problem.SetParameterLowerBound(&values_[i], 0, std::log(p.low));
     problem.SetParameterUpperBound(&values_[i], 0, std::log(p.high));
@@ -185,7 +185,7 @@ double uniform(std::uint64_t& state) {
 
 std::vector<double> random_start(const Experiment& experiment, std::uint64_t& state) {
   std::vector<double> values;
-  for (const Parameter& p : experiment.parameters)
+  for (const FittedParameter& p : experiment.parameters)
     values.push_back(std::log(p.low) + uniform(state) * std::log(p.high / p.low));
   return values;
 }
@@ -194,7 +194,7 @@ std::vector<double> random_start(const Experiment& experiment, std::uint64_t& st
 void set_typical_factors(const Experiment& experiment, const std::vector<bool>& used, Fit& result) {
   const std::size_t n = experiment.parameters.size();
   for (std::size_t i = 0; i < n; ++i) {
-    const Parameter& p = experiment.parameters[i];
+    const FittedParameter& p = experiment.parameters[i];
     if (p.scope != Scope::scene || used[i]) continue;
     double sum = 0.0, squares = 0.0, count = 0.0;
     for (std::size_t k = 0; k < n; ++k) {
@@ -216,7 +216,7 @@ void set_estimates(const Experiment& experiment, const std::vector<bool>& used, 
   const std::size_t n = experiment.parameters.size();
   result.estimates.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const Parameter& p = experiment.parameters[i];
+    const FittedParameter& p = experiment.parameters[i];
     Estimate& e = result.estimates[i];
     const double sd = std::sqrt(result.covariance[i * n + i]);
     e.value = std::exp(result.log_values[i]);

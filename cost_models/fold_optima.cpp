@@ -30,9 +30,9 @@ std::optional<Split> split_of(const std::string& name) {
 
 }  // namespace
 
-std::string to_csv(const std::vector<FoldOptimum>& optima, const std::vector<Parameter>& parameters) {
+std::string to_csv(const std::vector<FoldOptimum>& optima, const std::vector<FittedParameter>& parameters) {
   std::string text = "split,fold";
-  for (const Parameter& p : parameters) text += "," + quoted(p.id());
+  for (const FittedParameter& p : parameters) text += "," + quoted(p.id());
   for (const FoldOptimum& optimum : optima) {
     text += "\n" + std::string(split_name(optimum.split)) + "," + quoted(optimum.fold);
     for (const double log_value : optimum.log_values) text += "," + number(std::exp(log_value));
@@ -40,7 +40,8 @@ std::string to_csv(const std::vector<FoldOptimum>& optima, const std::vector<Par
   return text + "\n";
 }
 
-std::vector<FoldOptimum> load_fold_optima(const std::string& path, const std::vector<Parameter>& parameters) {
+std::vector<FoldOptimum> load_fold_optima(const std::string& path,
+                                          const std::vector<FittedParameter>& parameters) {
   const CsvFile file = read_csv(path);
   std::vector<FoldOptimum> optima;
   for (std::size_t row = 0; row < file.rows.size(); ++row) {
@@ -57,7 +58,7 @@ std::vector<FoldOptimum> load_fold_optima(const std::string& path, const std::ve
     const std::optional<Split> split = split_of(name);
     if (!split) refuse("`" + name + "` is no split of a validation");
     FoldOptimum optimum{*split, cells[file.column("fold")], {}};
-    for (const Parameter& p : parameters) {
+    for (const FittedParameter& p : parameters) {
       const auto column = std::find(file.header.begin(), file.header.end(), p.id()) - file.header.begin();
       const bool named = column < static_cast<std::ptrdiff_t>(cells.size());
       const std::optional<double> value =

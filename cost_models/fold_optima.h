@@ -9,10 +9,11 @@
 namespace hwsim::cost_models {
 
 /// Values, not their logarithms, with digits enough to read the same numbers back.
-std::string to_csv(const std::vector<FoldOptimum>& optima, const std::vector<Parameter>& parameters);
+std::string to_csv(const std::vector<FoldOptimum>& optima, const std::vector<FittedParameter>& parameters);
 
 /// A parameter that the file does not name gets its declared start. Throws InputError M009 for a split that
 /// does not exist and for what is no positive number.
-std::vector<FoldOptimum> load_fold_optima(const std::string& path, const std::vector<Parameter>& parameters);
+std::vector<FoldOptimum> load_fold_optima(const std::string& path,
+                                          const std::vector<FittedParameter>& parameters);
 
 }  // namespace hwsim::cost_models

@@ -26,17 +26,17 @@ class Reader {
   Reader(const std::string& path, const std::map<std::string, GpuConfig>& gpus)
       : file_(read_csv(path)), gpus_(gpus) {}
 
-  std::vector<Parameter> run() {
-    std::vector<Parameter> parameters;
+  std::vector<FittedParameter> run() {
+    std::vector<FittedParameter> parameters;
     std::set<std::string> ids;
     for (row_ = 0; row_ < file_.rows.size(); ++row_) {
-      const Parameter parameter = read();
+      const FittedParameter parameter = read();
       if (!ids.insert(parameter.id()).second) problem("`" + parameter.id() + "` is declared twice");
       parameters.push_back(parameter);
     }
     if (!problems_.empty()) throw InputError(problems_);
-    for (Parameter& p : parameters)
-      for (const Parameter& own : parameters)
+    for (FittedParameter& p : parameters)
+      for (const FittedParameter& own : parameters)
         if (p.scope == Scope::all && own.scope == Scope::gpu && own.name == p.name)
           p.own_of.push_back(own.member);
     return parameters;
@@ -61,8 +61,8 @@ class Reader {
     return value.value_or(0.0);
   }
 
-  Parameter read() {
-    Parameter p;
+  FittedParameter read() {
+    FittedParameter p;
     const std::string& scope = text("scope");
     p.scope = scope == "gpu" ? Scope::gpu : scope == "all" ? Scope::all : Scope::scene;
     if (scope_name(p.scope) != scope) problem("`" + scope + "` is no scope: gpu, all or scene");
@@ -83,7 +83,7 @@ class Reader {
   }
 
   /// Value and interval of a GPU's file; of the key's first GPU for all.
-  std::pair<double, std::array<double, 2>> from_file(const Parameter& p) {
+  std::pair<double, std::array<double, 2>> from_file(const FittedParameter& p) {
     if (p.scope == Scope::scene) {
       if (p.name != kGeometryLoad && p.name != kLightReach) problem("scenes have no factor `" + p.name + "`");
       return {1.0, {0.0, 0.0}};
@@ -126,13 +126,13 @@ std::string_view scope_name(Scope scope) {
   return "gpu";
 }
 
-bool Parameter::concerns(const std::string& gpu, const std::string& scene) const {
+bool FittedParameter::concerns(const std::string& gpu, const std::string& scene) const {
   if (scope == Scope::all) return std::find(own_of.begin(), own_of.end(), gpu) == own_of.end();
   return member == (scope == Scope::gpu ? gpu : scene);
 }
 
-std::vector<Parameter> load_parameters(const std::string& path,
-                                       const std::map<std::string, GpuConfig>& gpus) {
+std::vector<FittedParameter> load_parameters(const std::string& path,
+                                             const std::map<std::string, GpuConfig>& gpus) {
   return Reader(path, gpus).run();
 }
 

@@ -25,7 +25,7 @@ inline constexpr std::string_view kPresent = "present_us";
 /// The name by which mapping files count it among the passes of a row; "*" includes it.
 inline constexpr std::string_view kPresentPass = "present";
 
-struct Parameter {
+struct FittedParameter {
   Scope scope = Scope::gpu;
   std::string member;  ///< GPU or scene; "all" for scope all
   std::string name;    ///< key of a GPU file, or a factor of a scene
@@ -39,6 +39,7 @@ struct Parameter {
 
 /// Reads the declarations. "file" for start or range stands for what the GPU's file says (value, interval).
 /// Throws InputError M003 with every mistake.
-std::vector<Parameter> load_parameters(const std::string& path, const std::map<std::string, GpuConfig>& gpus);
+std::vector<FittedParameter> load_parameters(const std::string& path,
+                                             const std::map<std::string, GpuConfig>& gpus);
 
 }  // namespace hwsim::cost_models

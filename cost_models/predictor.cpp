@@ -28,7 +28,7 @@ double value_of(const Jets& t) { return t.a; }
 
 /// What an evaluation needs to know about one GPU.
 template <class T>
-GpuRates<T> rates_of(const GpuConfig& gpu, const std::vector<Parameter>& parameters,
+GpuRates<T> rates_of(const GpuConfig& gpu, const std::vector<FittedParameter>& parameters,
                      const std::vector<std::size_t>& active, std::span<const double> log_values) {
   const auto place = [&](std::string_view key, double value) {
     for (std::size_t lane = 0; lane < active.size(); ++lane)
@@ -64,7 +64,7 @@ struct Present {
   std::ptrdiff_t index = -1;
 };
 
-Present present_of(const std::vector<Parameter>& parameters, const std::vector<std::size_t>& active,
+Present present_of(const std::vector<FittedParameter>& parameters, const std::vector<std::size_t>& active,
                    std::span<const double> log_values) {
   for (const std::size_t i : active)
     if (parameters[i].name == kPresent)
@@ -72,7 +72,7 @@ Present present_of(const std::vector<Parameter>& parameters, const std::vector<s
   return {};
 }
 
-SceneFactors factors_of(const std::vector<Parameter>& parameters, const std::string& scene,
+SceneFactors factors_of(const std::vector<FittedParameter>& parameters, const std::string& scene,
                         std::span<const double> log_values) {
   SceneFactors f;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -86,9 +86,10 @@ SceneFactors factors_of(const std::vector<Parameter>& parameters, const std::str
 
 bool has_reach(const Experiment& experiment, const Replay& replay) {
   const std::string& scene = experiment.cells[replay.cells.front()].scene_group;
-  return std::any_of(experiment.parameters.begin(), experiment.parameters.end(), [&](const Parameter& p) {
-    return p.scope == Scope::scene && p.member == scene && p.name == kLightReach;
-  });
+  return std::any_of(experiment.parameters.begin(), experiment.parameters.end(),
+                     [&](const FittedParameter& p) {
+                       return p.scope == Scope::scene && p.member == scene && p.name == kLightReach;
+                     });
 }
 
 }  // namespace
@@ -98,7 +99,7 @@ Predictor::Predictor(const Experiment& experiment, int jobs, const std::vector<b
   for (const GpuConfig& gpu : experiment.gpus) {
     std::vector<std::size_t> own;
     for (std::size_t i = 0; i < experiment.parameters.size(); ++i) {
-      const Parameter& p = experiment.parameters[i];
+      const FittedParameter& p = experiment.parameters[i];
       if (p.scope != Scope::scene && p.concerns(gpu.id, "")) own.push_back(i);
     }
     if (own.size() > kJetWidth)
@@ -211,7 +212,7 @@ void Predictor::predict(const CellPasses& of, const std::vector<Time>& times,
 
 std::vector<double> Predictor::start() const {
   std::vector<double> values;
-  for (const Parameter& p : experiment_.parameters) values.push_back(std::log(p.start));
+  for (const FittedParameter& p : experiment_.parameters) values.push_back(std::log(p.start));
   return values;
 }
 

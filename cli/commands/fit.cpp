@@ -32,7 +32,7 @@ Table parameter_table(const Experiment& experiment, const Fit& fit) {
                {"meaning", "meaning", false, 60}},
               {}};
   for (std::size_t i = 0; i < experiment.parameters.size(); ++i) {
-    const cost_models::Parameter& p = experiment.parameters[i];
+    const cost_models::FittedParameter& p = experiment.parameters[i];
     const cost_models::Estimate& e = fit.estimates[i];
     table.rows.push_back({p.id(), p.unit, Real{p.start, 3}, Real{p.low, 3}, Real{p.high, 3}, Real{e.value, 3},
                           Real{e.low90, 3}, Real{e.high90, 3}, state_of(e), p.meaning});

@@ -112,7 +112,7 @@ bool Cores::ask_lines(Core& core, Subgroup& s, double now) {
     const bool texture = s.textures > 0.0;
     const Stream stream = texture ? Stream::texture : Stream::storage;
     const double arrives = around_.memory.access(
-        MemoryClient::reads, stream, around_.survival_of(at(stream), false), 1.0, false, false, start);
+        MemoryClient::reads, stream, around_.survival_of(index_of(stream), false), 1.0, false, false, start);
     core.misses.push_back(arrives);
     s.ready_ns = std::max(s.ready_ns, arrives);
     (texture ? s.textures : s.loads) -= 1.0;

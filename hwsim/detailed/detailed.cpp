@@ -194,7 +194,7 @@ void share_stack(PassTime<double>& time) {
   if (shares.peak > 0.0)
     shares.share(time);
   else
-    time.stack_ns[at(Unit::fe)] = time.time_ns;
+    time.stack_ns[index_of(Unit::fe)] = time.time_ns;
 }
 
 }  // namespace
@@ -217,11 +217,12 @@ DetailedTime detailed_time(const PassWork& pass, const GpuConfig& gpu, const Gpu
   } else {
     end = run_windows(machine, line, windows, random, result);
   }
-  end.busy_ns[at(Unit::dram)] += machine.memory().flush_ns();  // once, however much of the pass was simulated
+  end.busy_ns[index_of(Unit::dram)] +=
+      machine.memory().flush_ns();  // once, however much of the pass was simulated
   result.time.dram = end.bytes;
   result.time.dram += machine.memory().flush_bytes();
-  result.time.time_ns =
-      std::max({end.ns, end.busy_ns[at(Unit::dram)], result.time.dram.total() / gpu.dram_bandwidth_gb_s});
+  result.time.time_ns = std::max(
+      {end.ns, end.busy_ns[index_of(Unit::dram)], result.time.dram.total() / gpu.dram_bandwidth_gb_s});
   for (std::size_t u = 0; u < kUnitCount; ++u)
     result.time.busy_ns[u] = std::min(end.busy_ns[u], result.time.time_ns);
   share_stack(result.time);

@@ -18,7 +18,7 @@ double Front::take(const ChunkPackets& chunk) {
     if (taken_ >= queue_packets_) start = std::max(start, done_ns_[u + 1][slot]);
     start = std::max(start, free_ns_[u]);
     start = lines_[u].move(chunk, info(kFrontUnits[u]).streams, 1.0, start);
-    const double service_ns = chunk.service_ns[at(kFrontUnits[u])];
+    const double service_ns = chunk.service_ns[index_of(kFrontUnits[u])];
     ready = free_ns_[u] = std::max(free_ns_[u], start) + service_ns;
     busy_ns_[u] += service_ns;
     done_ns_[u][slot] = ready;

@@ -84,13 +84,13 @@ Machine::Progress Machine::progress(double ns) const { return {ns, memory().dram
 
 std::array<double, kUnitCount> Machine::busy_ns() const {
   std::array<double, kUnitCount> busy{};
-  for (std::size_t u = 0; u < kFrontUnits.size(); ++u) busy[at(kFrontUnits[u])] = front_.busy_ns()[u];
-  busy[at(Unit::shader)] = cores_.shader_busy_ns();
-  busy[at(Unit::tex)] = cores_.tex_busy_ns();
-  busy[at(Unit::crop)] = rops_.crop_busy_ns();
-  busy[at(Unit::resolve)] = rops_.resolve_busy_ns();
-  busy[at(Unit::l2)] = memory().l2_busy_ns();
-  busy[at(Unit::dram)] = memory().dram().busy_ns();
+  for (std::size_t u = 0; u < kFrontUnits.size(); ++u) busy[index_of(kFrontUnits[u])] = front_.busy_ns()[u];
+  busy[index_of(Unit::shader)] = cores_.shader_busy_ns();
+  busy[index_of(Unit::tex)] = cores_.tex_busy_ns();
+  busy[index_of(Unit::crop)] = rops_.crop_busy_ns();
+  busy[index_of(Unit::resolve)] = rops_.resolve_busy_ns();
+  busy[index_of(Unit::l2)] = memory().l2_busy_ns();
+  busy[index_of(Unit::dram)] = memory().dram().busy_ns();
   return busy;
 }
 

@@ -73,7 +73,7 @@ double MemorySystem::access(MemoryClient client, Stream stream, const Survival& 
   const std::uint64_t line =
       sources_[static_cast<std::size_t>(client)]->next(survival, write, run_lines, 0.0);
   const auto move = [this](Stream of, bool out) {
-    (out ? bytes_.write : bytes_.read)[at(of)] += kTextureLineBytes;
+    (out ? bytes_.write : bytes_.read)[index_of(of)] += kTextureLineBytes;
   };
   if (bypass) {
     move(stream, write);
@@ -117,7 +117,7 @@ void MemorySystem::pass_by(const std::vector<Passing>& accesses) {
 
 StreamBytesOf<double> MemorySystem::flush_bytes() const {
   StreamBytesOf<double> bytes;
-  l2_.each_dirty_line([&](std::uint64_t line) { bytes.write[at(owner(line))] += kTextureLineBytes; });
+  l2_.each_dirty_line([&](std::uint64_t line) { bytes.write[index_of(owner(line))] += kTextureLineBytes; });
   return bytes;
 }
 

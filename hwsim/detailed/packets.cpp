@@ -23,13 +23,14 @@ SubgroupWork subgroup_work(const PassCounters& c, const ShaderPipes<double>& pip
   work.memory_phases = static_cast<double>(c.shader.memory_chain_lane_ops) / lanes;
   work.l1_lines =
       static_cast<double>(c.mem.texture_read_bytes) * model.l1_asked / kTextureLineBytes / subgroups;
-  work.storage_lines = static_cast<double>(c.mem.storage_read_bytes) * model.l2.read[at(Stream::storage)] /
-                       kTextureLineBytes / subgroups;
+  work.storage_lines = static_cast<double>(c.mem.storage_read_bytes) *
+                       model.l2.read[index_of(Stream::storage)] / kTextureLineBytes / subgroups;
   return work;
 }
 
 bool passes_l2_by(std::size_t stream, const GpuRates<double>& r) {
-  if (stream == at(Stream::color) || stream == at(Stream::depth)) return !r.rop_through_l2 || r.tile_based;
+  if (stream == index_of(Stream::color) || stream == index_of(Stream::depth))
+    return !r.rop_through_l2 || r.tile_based;
   return false;
 }
 
@@ -50,13 +51,13 @@ void share_bytes(const PassCounters& c, const TrafficModel<double>& model, const
       chunk.direct.write[i] += model.tile_chunk.write[i] / n;
     }
     const double binned = binned_bytes(c, model.tile_px, r) / n;
-    chunk.direct.read[at(Stream::other)] += binned;
-    chunk.direct.write[at(Stream::other)] += binned;
+    chunk.direct.read[index_of(Stream::other)] += binned;
+    chunk.direct.write[index_of(Stream::other)] += binned;
   }
-  chunk.l2.read[at(Stream::other)] += ring_bytes(c, r.gs_on_chip) / n;
-  chunk.l2.write[at(Stream::other)] += ring_bytes(c, r.gs_on_chip) / n;
-  chunk.l2.read[at(Stream::texture)] = 0.0;  // L1 decides which lines L2 is asked for
-  chunk.l2.read[at(Stream::storage)] = 0.0;  // asked for by the subgroups
+  chunk.l2.read[index_of(Stream::other)] += ring_bytes(c, r.gs_on_chip) / n;
+  chunk.l2.write[index_of(Stream::other)] += ring_bytes(c, r.gs_on_chip) / n;
+  chunk.l2.read[index_of(Stream::texture)] = 0.0;  // L1 decides which lines L2 is asked for
+  chunk.l2.read[index_of(Stream::storage)] = 0.0;  // asked for by the subgroups
 }
 
 /// Tiles come into the ROPs' caches and leave them whole, or what was asked of them: one after the other, the
@@ -66,8 +67,8 @@ void set_runs(const PassWork& pass, const PassShape& shape, const TrafficModel<d
   plan.run_lines.read.fill(1.0);
   plan.run_lines.write.fill(1.0);
   for (const bool color : {true, false}) {
-    const std::size_t i = at(color ? Stream::color : Stream::depth);
-    const MissCurve& curve = pass.reuse.apart[at(color ? ReuseStream::color : ReuseStream::depth)];
+    const std::size_t i = index_of(color ? Stream::color : Stream::depth);
+    const MissCurve& curve = pass.reuse.apart[index_of(color ? ReuseStream::color : ReuseStream::depth)];
     const double cache = color ? r.crop_cache_bytes : r.zrop_cache_bytes,
                  tile = color ? shape.color_tile_bytes : shape.depth_tile_bytes;
     const auto lines = [&](const auto& bytes, const auto& stays, double reached, double reached_raw) {
@@ -93,7 +94,7 @@ double in_flight_packets(const ChunkPackets& chunk, const ChunkCost<double>& cos
                          const GpuRates<double>& r) {
   double packets = static_cast<double>(r.queue_packets) * kUnitsBeforeCores;
   if (chunk.expected_ns <= 0.0) return packets;
-  const double dram_load = chunk.service_ns[at(Unit::dram)] / chunk.expected_ns;
+  const double dram_load = chunk.service_ns[index_of(Unit::dram)] / chunk.expected_ns;
   packets += waiting(r.dram_latency_ns * dram_load / chunk.expected_ns, dram_load,
                      r.unit_lines * kTextureLineBytes / std::max(1.0, chunk.expected_bytes));
   if (chunk.subgroups <= 0.0) return packets;

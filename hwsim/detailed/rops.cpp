@@ -18,10 +18,10 @@ Rops::Leaving Rops::finish(const ChunkPackets& chunk, double now) {
   const double packets = chunk.leaving_packets;
   double start = std::max(accepted, crop_free_ns_);
   start = lines_.move(chunk, info(Unit::crop).streams, packets, start);
-  const double stored = chunk.l2.write[at(Stream::storage)] * packets;
+  const double stored = chunk.l2.write[index_of(Stream::storage)] * packets;
   start = lines_.move_bytes(Stream::storage, stored, true, false, start);
-  double done = serve(crop_free_ns_, crop_busy_ns_, start, chunk.service_ns[at(Unit::crop)] * packets);
-  const double resolve_ns = chunk.service_ns[at(Unit::resolve)] * packets;
+  double done = serve(crop_free_ns_, crop_busy_ns_, start, chunk.service_ns[index_of(Unit::crop)] * packets);
+  const double resolve_ns = chunk.service_ns[index_of(Unit::resolve)] * packets;
   if (resolve_ns > 0.0) done = std::max(done, serve(resolve_free_ns_, resolve_busy_ns_, start, resolve_ns));
   done_ns_[slot] = done;
   return {accepted, done};

@@ -18,8 +18,8 @@ SkippedLines skipped_lines(const PacketPlan& plan, std::uint64_t first, std::uin
       skipped.l2.write[i] += n * chunk.l2.write[i] / kTextureLineBytes;
     }
     const double subgroups = n * chunk.subgroups / static_cast<double>(chunk.count);
-    skipped.l2.read[at(Stream::storage)] += subgroups * chunk.work.storage_lines;
-    skipped.l2.read[at(Stream::texture)] += subgroups * chunk.work.l1_lines * l1_missing;
+    skipped.l2.read[index_of(Stream::storage)] += subgroups * chunk.work.storage_lines;
+    skipped.l2.read[index_of(Stream::texture)] += subgroups * chunk.work.l1_lines * l1_missing;
     skipped.l1_lookups += subgroups * chunk.work.l1_lines / cores;
   }
   return skipped;

@@ -10,16 +10,16 @@ const MissCurve& curve_of(const ReuseProfile& reuse, Stream stream) {
   static const MissCurve none;
   switch (stream) {
     case Stream::color:
-      return reuse.apart[at(ReuseStream::color)];
+      return reuse.apart[index_of(ReuseStream::color)];
     case Stream::depth:
-      return reuse.apart[at(ReuseStream::depth)];
+      return reuse.apart[index_of(ReuseStream::depth)];
     case Stream::texture:
-      return reuse.apart[at(ReuseStream::texture)];
+      return reuse.apart[index_of(ReuseStream::texture)];
     case Stream::storage:
-      return reuse.apart[at(ReuseStream::storage)];
+      return reuse.apart[index_of(ReuseStream::storage)];
     case Stream::vertex:
     case Stream::index:
-      return reuse.apart[at(ReuseStream::geometry)];
+      return reuse.apart[index_of(ReuseStream::geometry)];
     default:
       return none;
   }

@@ -23,8 +23,8 @@ double UnitLines::move_bytes(Stream stream, double bytes, bool write, bool bypas
     return all;
   }();
   if (bytes <= 0.0) return now;
-  const Survival& survival = bypass ? kAlwaysNew : around_.survival_of(at(stream), write);
-  const double run_lines = around_.run_lines(at(stream), write);
+  const Survival& survival = bypass ? kAlwaysNew : around_.survival_of(index_of(stream), write);
+  const double run_lines = around_.run_lines(index_of(stream), write);
   const double lines = around_.whole(bytes / kTextureLineBytes);
   for (double i = 0.0; i < lines; i += 1.0) {
     while (!arrive_ns_.empty() && arrive_ns_.front() <= now) arrive_ns_.pop_front();

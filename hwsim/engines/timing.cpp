@@ -112,7 +112,7 @@ PassTiming detailed_pass(const PassWork& pass, const GpuConfig& gpu, const GpuRa
   const double overhead = waits ? rates.pass_overhead_ns : 0.0;
   detailed.time.overhead_ns = overhead;
   detailed.time.time_ns += overhead;
-  detailed.time.stack_ns[at(Unit::fe)] += overhead;
+  detailed.time.stack_ns[index_of(Unit::fe)] += overhead;
   PassTiming timing = report(pass, detailed.time);
   if (detailed.interval_ns)
     timing.sampling_interval_ns = {(*detailed.interval_ns)[0] + overhead,

@@ -52,14 +52,14 @@ ChunkCost<T> clear_cost(const PassWork& pass, const GpuRates<T>& r) {
       static_cast<double>((pass.width_px + 7) / 8) * static_cast<double>((pass.height_px + 7) / 8);
   const double px = static_cast<double>(pass.width_px) * static_cast<double>(pass.height_px);
   ChunkCost<T> cost;
-  const auto write = [&cost](Stream stream, const T& bytes) { cost.dram.write[at(stream)] += bytes; };
+  const auto write = [&cost](Stream stream, const T& bytes) { cost.dram.write[index_of(stream)] += bytes; };
   for (const ColorTargetWork& target : pass.color_targets) {
     const auto k = static_cast<std::size_t>(info(target.format).rate_class);
     if (r.fast_clear_color) {
       write(Stream::other, tiles * r.clear_color_tile_bytes);
     } else if (k < static_cast<std::size_t>(RateClass::depth)) {
       write(Stream::color, T(px * target.samples * info(target.format).bytes));
-      cost.ns[at(Unit::crop)] +=
+      cost.ns[index_of(Unit::crop)] +=
           larger(T(px * r.color_px_ns[k]), T(px * target.samples * r.color_sample_ns[k]));
     }
   }
@@ -67,9 +67,9 @@ ChunkCost<T> clear_cost(const PassWork& pass, const GpuRates<T>& r) {
     write(Stream::other, tiles * r.clear_depth_tile_bytes);
   } else if (pass.depth_format != Format::none) {
     write(Stream::depth, T(px * pass.depth_samples * info(pass.depth_format).bytes));
-    cost.ns[at(Unit::zrop)] += px * pass.depth_samples * r.zrop_sample_ns;
+    cost.ns[index_of(Unit::zrop)] += px * pass.depth_samples * r.zrop_sample_ns;
   }
-  cost.ns[at(Unit::dram)] = cost.dram.total() * r.dram_byte_ns;
+  cost.ns[index_of(Unit::dram)] = cost.dram.total() * r.dram_byte_ns;
   return cost;
 }
 

@@ -28,7 +28,8 @@ std::vector<ChunkCost<T>> chunk_costs(const PassWork& pass, const PassShape& sha
   if (pass.kind == PassKind::clear) {
     costs.push_back(clear_cost(pass, rates));
     const ChunkTraffic<T> none;
-    costs.front().ns[at(Unit::fe)] = units::FrontEnd::service_ns(UnitWork<T>{shape.sum, pass, none}, rates);
+    costs.front().ns[index_of(Unit::fe)] =
+        units::FrontEnd::service_ns(UnitWork<T>{shape.sum, pass, none}, rates);
     return costs;
   }
   const TrafficModel<T> model = model_traffic(shape, pass, rates);
@@ -45,11 +46,11 @@ std::vector<ChunkCost<T>> chunk_costs(const PassWork& pass, const GpuRates<T>& r
 /// Shaders' share of the time, split between vertex and pixel work: they run on the same cores.
 template <class T>
 void split_shader_stack(PassTime<T>& time) {
-  T& shader = time.stack_ns[at(Unit::shader)];
-  const T& busy = time.busy_ns[at(Unit::shader)];
+  T& shader = time.stack_ns[index_of(Unit::shader)];
+  const T& busy = time.busy_ns[index_of(Unit::shader)];
   if (!(busy > T(0.0))) return;
-  const T vertex = shader * smaller(T(1.0), T(time.busy_ns[at(Unit::vs)] / busy));
-  time.stack_ns[at(Unit::vs)] += vertex;
+  const T vertex = shader * smaller(T(1.0), T(time.busy_ns[index_of(Unit::vs)] / busy));
+  time.stack_ns[index_of(Unit::vs)] += vertex;
   shader -= vertex;
 }
 
@@ -175,7 +176,7 @@ PassTime<T> time_costs(const std::vector<ChunkCost<T>>& costs, const GpuRates<T>
   split_shader_stack(time);
   if (waits) time.overhead_ns = rates.pass_overhead_ns;
   time.time_ns += time.overhead_ns;
-  time.stack_ns[at(Unit::fe)] += time.overhead_ns;
+  time.stack_ns[index_of(Unit::fe)] += time.overhead_ns;
   return time;
 }
 

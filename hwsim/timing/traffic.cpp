@@ -14,8 +14,8 @@ double StreamBytes::total_write() const { return std::accumulate(write.begin(), 
 
 StreamBytes requested_bytes(const PassCounters& c) {
   StreamBytes bytes;
-  const auto read = [&bytes](Stream s, std::uint64_t n) { bytes.read[at(s)] = real(n); };
-  const auto write = [&bytes](Stream s, std::uint64_t n) { bytes.write[at(s)] = real(n); };
+  const auto read = [&bytes](Stream s, std::uint64_t n) { bytes.read[index_of(s)] = real(n); };
+  const auto write = [&bytes](Stream s, std::uint64_t n) { bytes.write[index_of(s)] = real(n); };
   read(Stream::depth, c.mem.depth_read_bytes);
   write(Stream::depth, c.mem.depth_write_bytes);
   read(Stream::color, c.mem.color_read_bytes);

@@ -97,14 +97,14 @@ template <class T>
 void model_rop(const PassShape& shape, const PassWork& pass, ReuseStream reuse, const GpuRates<T>& r,
                TrafficModel<T>& model) {
   const bool color = reuse == ReuseStream::color;
-  const std::size_t i = at(color ? Stream::color : Stream::depth);
+  const std::size_t i = index_of(color ? Stream::color : Stream::depth);
   const bool cleared = color ? pass.color_cleared_before : pass.depth_cleared_before;
   const T& own_cache = color ? r.crop_cache_bytes : r.zrop_cache_bytes;
   const auto times = [](const MovedRatio<T>& a, const MovedRatio<T>& b) {
     return MovedRatio<T>{a.read * b.read, a.write * b.write};
   };
-  const MissCurve& apart = pass.reuse.apart[at(reuse)];
-  const MissCurve& behind = r.rop_through_l2 ? pass.reuse.shared[at(reuse)] : apart;
+  const MissCurve& apart = pass.reuse.apart[index_of(reuse)];
+  const MissCurve& behind = r.rop_through_l2 ? pass.reuse.shared[index_of(reuse)] : apart;
   const T last_cache = r.rop_through_l2 ? r.l2_bytes : T(own_cache + r.llc_bytes);
   const MovedRatio<T> kept = kept_by(shape, pass, reuse, behind, last_cache, r);
   const MovedRatio<T> dram = times(moved_by(behind, last_cache, cleared), kept);
@@ -141,7 +141,7 @@ void model_tile_memory(const PassShape& shape, const PassWork& pass, const GpuRa
                        TrafficModel<T>& model) {
   model.tile_px = screen_tile_px(pass, r);
   for (const Stream stream : {Stream::color, Stream::depth}) {
-    const std::size_t i = at(stream);
+    const std::size_t i = index_of(stream);
     model.l2.read[i] = model.l2.write[i] = T(0.0);
     if (draws(pass.kind)) model.dram.read[i] = model.dram.write[i] = T(0.0);
     if (pass.source_in_tile) model.dram.read[i] = T(0.0);
@@ -154,9 +154,11 @@ void model_tile_memory(const PassShape& shape, const PassWork& pass, const GpuRa
   };
   const auto add = [&](Stream stream, double touched, bool cleared, bool loaded, bool kept, double px_bytes,
                        const T& read_ratio, const T& write_ratio) {
-    if (loaded && !cleared) model.tile_chunk.read[at(stream)] += touched * px_bytes / chunks * read_ratio;
+    if (loaded && !cleared)
+      model.tile_chunk.read[index_of(stream)] += touched * px_bytes / chunks * read_ratio;
     if (kept)
-      model.tile_chunk.write[at(stream)] += (cleared ? all_px : touched) * px_bytes / chunks * write_ratio;
+      model.tile_chunk.write[index_of(stream)] +=
+          (cleared ? all_px : touched) * px_bytes / chunks * write_ratio;
   };
   const auto targets = static_cast<double>(pass.color_targets.size());
   for (const ColorTargetWork& t : pass.color_targets) {
@@ -188,10 +190,10 @@ TrafficModel<T> model_traffic(const PassShape& shape, const PassWork& pass, cons
   const auto& in_l2 = rates.rop_through_l2 && !rates.tile_based ? pass.reuse.shared : pass.reuse.apart;
   // Lines move whole: accesses to parts of lines ask L2 for more than they use.
   const auto set = [&](Stream stream, ReuseStream reuse) {
-    const MissCurve& curve = in_l2[at(reuse)];
+    const MissCurve& curve = in_l2[index_of(reuse)];
     const MovedRatio<T> moved = moved_by(curve, rates.l2_bytes, false);
     const MovedRatio<T> lines = moved_by(curve, T(kSmallestCacheBytes), false);
-    const std::size_t i = at(stream);
+    const std::size_t i = index_of(stream);
     model.dram.read[i] = moved.read;
     model.dram.write[i] = moved.write;
     model.l2.read[i] = model.reaches_l2.read[i] = larger(T(1.0), lines.read);
@@ -203,8 +205,9 @@ TrafficModel<T> model_traffic(const PassShape& shape, const PassWork& pass, cons
   set(Stream::texture, ReuseStream::texture);
   model.l1_asked = larger(T(1.0), moved_by(pass.reuse.texture_l1, T(kSmallestCacheBytes), false).read);
   model.l1_fill = moved_by(pass.reuse.texture_l1, rates.l1_bytes, false).read;
-  model.l2.read[at(Stream::texture)] = model.reaches_l2.read[at(Stream::texture)] = model.l1_fill;
-  model.dram.read[at(Stream::texture)] = smaller(model.dram.read[at(Stream::texture)], model.l1_fill);
+  model.l2.read[index_of(Stream::texture)] = model.reaches_l2.read[index_of(Stream::texture)] = model.l1_fill;
+  model.dram.read[index_of(Stream::texture)] =
+      smaller(model.dram.read[index_of(Stream::texture)], model.l1_fill);
   return model;
 }
 
@@ -233,17 +236,18 @@ ChunkTraffic<T> chunk_traffic(const PassCounters& c, const TrafficModel<T>& mode
     traffic.dram.write[i] = asked.write[i] * model.dram.write[i];
     traffic.l2_bytes += asked.read[i] * model.l2.read[i] + asked.write[i] * model.l2.write[i];
   }
-  traffic.storage_read_bytes = asked.read[at(Stream::storage)] * model.l2.read[at(Stream::storage)];
-  traffic.l1_fill_bytes = asked.read[at(Stream::texture)] * model.l1_fill;
+  traffic.storage_read_bytes =
+      asked.read[index_of(Stream::storage)] * model.l2.read[index_of(Stream::storage)];
+  traffic.l1_fill_bytes = asked.read[index_of(Stream::texture)] * model.l1_fill;
   const double ring = ring_bytes(c, rates.gs_on_chip);
-  traffic.dram.write[at(Stream::other)] += ring;
-  traffic.dram.read[at(Stream::other)] += ring;
+  traffic.dram.write[index_of(Stream::other)] += ring;
+  traffic.dram.read[index_of(Stream::other)] += ring;
   traffic.l2_bytes += T(2.0 * ring);
   if (rates.tile_based) {
     traffic.dram += model.tile_chunk;
     const T binned = binned_bytes(c, model.tile_px, rates);
-    traffic.dram.write[at(Stream::other)] += binned;
-    traffic.dram.read[at(Stream::other)] += binned;
+    traffic.dram.write[index_of(Stream::other)] += binned;
+    traffic.dram.read[index_of(Stream::other)] += binned;
   }
   return traffic;
 }

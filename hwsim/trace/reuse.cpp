@@ -49,8 +49,8 @@ class CurveBuilder {
     }
   }
   void leave(const Stay& stay, ReuseStream stream, std::size_t k) {
-    const BlockKind& kind = kinds_[at(stream)];
-    MissCurve& curve = curves_[at(stream)];
+    const BlockKind& kind = kinds_[index_of(stream)];
+    MissCurve& curve = curves_[index_of(stream)];
     const std::uint64_t read = moved(kind, stay.read[k]) << kind.shift;
     curve.read_bytes[k] += read;
     if (stay.first[k]) curve.first_read_bytes[k] += read;
@@ -77,7 +77,7 @@ class StayTable {
     slots_.assign(size, 0);
   }
   Stay& of(ReuseStream stream, std::uint32_t block) {
-    std::size_t slot = (block_hash(block) * kReuseStreams + at(stream)) & (slots_.size() - 1);
+    std::size_t slot = (block_hash(block) * kReuseStreams + index_of(stream)) & (slots_.size() - 1);
     while (slots_[slot] != 0 && !is(keys_[slots_[slot] - 1], stream, block))
       slot = (slot + 1) & (slots_.size() - 1);
     if (slots_[slot] == 0) {
@@ -115,7 +115,7 @@ void build_curves(std::span<const BlockAccess> accesses, const BlockKinds& kinds
   for (std::size_t i = 0; i < accesses.size(); ++i) {
     const BlockAccess& a = accesses[i];
     if (!belongs(a.stream)) continue;
-    const BlockKind& kind = kinds[at(a.stream)];
+    const BlockKind& kind = kinds[index_of(a.stream)];
     const auto weight = static_cast<std::int64_t>(kind.bytes) << kind.shift;
     Stay& stay = stays.of(a.stream, a.block);
     std::size_t missing = kSizes;
@@ -149,7 +149,7 @@ void thin(std::vector<BlockAccess>& accesses, BlockKinds& kinds, std::size_t acc
 
 void count_requests(std::span<const BlockAccess> accesses, const BlockKinds& kinds, ReuseProfile& profile) {
   for (const BlockAccess& a : accesses) {
-    const std::size_t s = at(a.stream);
+    const std::size_t s = index_of(a.stream);
     for (MissCurve* curve : {&profile.shared[s], &profile.apart[s]}) {
       curve->requested_read_bytes += std::uint64_t{a.read_bytes} << kinds[s].shift;
       curve->requested_write_bytes += std::uint64_t{a.write_bytes} << kinds[s].shift;
@@ -184,7 +184,8 @@ ReuseProfile analyze_reuse(std::vector<BlockAccess> accesses, BlockKinds kinds, 
     if (part == 0) build([](ReuseStream) { return true; }, profile.shared);
     if (part == 1) build([](ReuseStream s) { return s == ReuseStream::color; }, profile.apart);
     if (part == 2) build([](ReuseStream s) { return s == ReuseStream::depth; }, profile.apart);
-    if (part == 3) build([](ReuseStream s) { return at(s) >= at(ReuseStream::texture); }, profile.apart);
+    if (part == 3)
+      build([](ReuseStream s) { return index_of(s) >= index_of(ReuseStream::texture); }, profile.apart);
   });
   return profile;
 }

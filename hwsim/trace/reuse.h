@@ -31,7 +31,7 @@ struct MissCurve {
 
 enum class ReuseStream : std::uint8_t { color, depth, texture, storage, geometry };
 inline constexpr int kReuseStreams = 5;
-constexpr std::size_t at(ReuseStream stream) { return static_cast<std::size_t>(stream); }
+constexpr std::size_t index_of(ReuseStream stream) { return static_cast<std::size_t>(stream); }
 
 struct ReuseProfile {
   std::array<MissCurve, kReuseStreams> shared;  ///< one cache for all streams

@@ -13,14 +13,14 @@ namespace hwsim {
 enum class Stream : std::uint8_t { depth, color, texture, storage, vertex, index, constant, shader, other };
 inline constexpr int kStreamCount = 9;
 std::string_view stream_name(Stream stream);
-constexpr std::size_t at(Stream stream) { return static_cast<std::size_t>(stream); }
+constexpr std::size_t index_of(Stream stream) { return static_cast<std::size_t>(stream); }
 
 /// A set of streams, a bit each.
 using StreamSet = unsigned;
 constexpr StreamSet set_of() { return 0; }
 template <class... More>
 constexpr StreamSet set_of(Stream first, More... more) {
-  return 1u << at(first) | set_of(more...);
+  return 1u << index_of(first) | set_of(more...);
 }
 constexpr bool holds(StreamSet set, std::size_t stream) { return (set >> stream & 1u) != 0; }
 
@@ -74,7 +74,7 @@ struct ChunkTraffic {
   /// Lines that a subgroup waits for: textures beyond L1, storage always.
   T l1_missed_lines() const { return (l1_fill_bytes + storage_read_bytes) / kTextureLineBytes; }
   T l2_missed_lines() const {
-    return (dram.read[at(Stream::texture)] + dram.read[at(Stream::storage)]) / kTextureLineBytes;
+    return (dram.read[index_of(Stream::texture)] + dram.read[index_of(Stream::storage)]) / kTextureLineBytes;
   }
 };
 

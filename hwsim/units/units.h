@@ -65,8 +65,8 @@ inline constexpr int kUnitCount = static_cast<int>(kUnits.size());
 HWSIM_UNITS(HWSIM_UNIT_HAS_ITS_ID)
 #undef HWSIM_UNIT_HAS_ITS_ID
 
-constexpr std::size_t at(Unit unit) { return static_cast<std::size_t>(unit); }
-constexpr const UnitInfo& info(Unit unit) { return kUnits[at(unit)]; }
+constexpr std::size_t index_of(Unit unit) { return static_cast<std::size_t>(unit); }
+constexpr const UnitInfo& info(Unit unit) { return kUnits[index_of(unit)]; }
 constexpr std::string_view unit_name(Unit unit) { return info(unit).id; }
 constexpr bool stands_in(std::size_t unit, UnitPlace place) { return kUnits[unit].place == place; }
 

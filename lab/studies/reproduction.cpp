@@ -18,7 +18,8 @@ Fit fit_for(const Experiment& experiment, const cost_models::Calibration* calibr
                    ? "the calibration is of other parameters; documented values are used, without intervals"
                    : "not calibrated: documented values are used, without intervals; `hwsim fit` calibrates");
   Fit fit;
-  for (const cost_models::Parameter& p : experiment.parameters) fit.log_values.push_back(std::log(p.start));
+  for (const cost_models::FittedParameter& p : experiment.parameters)
+    fit.log_values.push_back(std::log(p.start));
   fit.covariance.assign(fit.log_values.size() * fit.log_values.size(), 0.0);
   return fit;
 }

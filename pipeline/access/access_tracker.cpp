@@ -19,7 +19,7 @@ ReuseProfile make_reuse_profile(std::vector<std::vector<BlockAccess>> by_worker,
     parallel_for(count, jobs, [&part](std::size_t i, int) { part(i); });
   };
   ReuseProfile profile = analyze_reuse(std::move(all), kinds, exact ? SIZE_MAX : kAccessesMax, side_by_side);
-  const int shift = kinds[at(ReuseStream::texture)].shift;
+  const int shift = kinds[index_of(ReuseStream::texture)].shift;
   std::uint64_t missed = 0;
   for (std::size_t k = kCacheSizes; k-- > 0;) {
     missed += l1_missing[k + 1];

@@ -28,7 +28,7 @@ struct AccessTracker {
     kinds = block_kinds;
     accesses.clear();
     l1_missing.fill(0);
-    recent_.start(kinds[at(ReuseStream::texture)].shift);
+    recent_.start(kinds[index_of(ReuseStream::texture)].shift);
     atomics.assign(storage ? kAtomicSlots : 0, 0);
   }
   /// A screen bin or a group: the first-level cache starts cold.
@@ -46,7 +46,7 @@ struct AccessTracker {
   }
   void use_if_sampled(int quad, ReuseStream stream, std::uint32_t block, std::uint32_t read,
                       std::uint32_t write) {
-    if (is_sampled(block, kinds[at(stream)].shift)) use(quad, stream, block, read, write);
+    if (is_sampled(block, kinds[index_of(stream)].shift)) use(quad, stream, block, read, write);
   }
   void end_batch() {
     for (std::vector<BlockAccess>& quad : batch_) {
@@ -72,7 +72,7 @@ struct AccessTracker {
     accesses.push_back({order, block, stream, read, write});
   }
   void touch_if_sampled(ReuseStream stream, std::uint32_t block, std::uint64_t read, std::uint64_t write) {
-    if (is_sampled(block, kinds[at(stream)].shift))
+    if (is_sampled(block, kinds[index_of(stream)].shift))
       touch(stream, block, static_cast<std::uint32_t>(read), static_cast<std::uint32_t>(write));
   }
   void count_atomic(int buffer, std::int32_t word) {

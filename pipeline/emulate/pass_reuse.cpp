@@ -35,17 +35,17 @@ BlockKinds block_kinds(const FrameGraph& graph, const Pass& pass, const PassCont
   for (const GpuImage* target : c.color) {
     tiles += target->touched_chunk.size();
     const auto bytes = static_cast<std::uint32_t>(kBlockLanes * target->samples * info(target->format).bytes);
-    kinds[at(ReuseStream::color)].bytes = std::max(kinds[at(ReuseStream::color)].bytes, bytes);
+    kinds[index_of(ReuseStream::color)].bytes = std::max(kinds[index_of(ReuseStream::color)].bytes, bytes);
   }
-  kinds[at(ReuseStream::texture)].shift = sample_shift(lines, shift_max);
-  kinds[at(ReuseStream::storage)].shift = sample_shift(stored, shift_max);
-  kinds[at(ReuseStream::geometry)].shift = shift_max;
-  kinds[at(ReuseStream::color)].whole = kinds[at(ReuseStream::depth)].whole = false;
-  kinds[at(ReuseStream::color)].shift = sample_shift(tiles, shift_max);
+  kinds[index_of(ReuseStream::texture)].shift = sample_shift(lines, shift_max);
+  kinds[index_of(ReuseStream::storage)].shift = sample_shift(stored, shift_max);
+  kinds[index_of(ReuseStream::geometry)].shift = shift_max;
+  kinds[index_of(ReuseStream::color)].whole = kinds[index_of(ReuseStream::depth)].whole = false;
+  kinds[index_of(ReuseStream::color)].shift = sample_shift(tiles, shift_max);
   if (c.depth == nullptr) return kinds;
-  kinds[at(ReuseStream::depth)].bytes =
+  kinds[index_of(ReuseStream::depth)].bytes =
       static_cast<std::uint32_t>(kBlockLanes * c.depth->samples * c.depth_bytes);
-  kinds[at(ReuseStream::depth)].shift = sample_shift(c.depth->touched_chunk.size(), shift_max);
+  kinds[index_of(ReuseStream::depth)].shift = sample_shift(c.depth->touched_chunk.size(), shift_max);
   return kinds;
 }
 
@@ -61,7 +61,7 @@ ReuseProfile merge_reuse(std::span<BinWorker> workers, const PassWork& work, boo
       make_reuse_profile(std::move(accesses), workers.front().tracker.kinds, l1_missing, exact, jobs);
   const MemCounters mem = total(work).mem;
   const auto request = [&profile](ReuseStream stream, std::uint64_t read, std::uint64_t write) {
-    for (MissCurve* curve : {&profile.shared[at(stream)], &profile.apart[at(stream)]}) {
+    for (MissCurve* curve : {&profile.shared[index_of(stream)], &profile.apart[index_of(stream)]}) {
       curve->requested_read_bytes = read;
       curve->requested_write_bytes = write;
     }

@@ -247,7 +247,7 @@ std::uint64_t mark_outside(const PassContext& context, Segment& segment) {
 
 void count_vertex_work(const PassContext& context, const Segment& segment, int cache_entries,
                        BinWorker& worker) {
-  const int shift = worker.tracker.kinds[at(ReuseStream::geometry)].shift;
+  const int shift = worker.tracker.kinds[index_of(ReuseStream::geometry)].shift;
   std::map<const std::uint32_t*, PartFetch> fetches;  // instances share their mesh's indices
   for (const GeometryItem& item : segment.items) {
     const DrawInfo& draw = context.draws[item.draw];

@@ -25,7 +25,7 @@ dvec3 axis_at(const Culm& culm, double t) {
 double radius_at(const Culm& culm, double t) { return culm.radius * (1.0 - 0.75 * t); }
 
 // Joints swell; between them the culm is a straight pipe.
-void add_culm(Surface& s, const Culm& culm, int sides) {
+void add_culm(MeshSurface& s, const Culm& culm, int sides) {
   constexpr double kRing[] = {0.0, 0.03, 0.06, 0.09, 0.5};
   constexpr double kSwell[] = {1.0, 1.16, 1.02, 0.97, 0.98};
   const int rows = 5 * culm.joints;
@@ -38,7 +38,7 @@ void add_culm(Surface& s, const Culm& culm, int sides) {
 }
 
 // A lance-shaped blade, folded along its rib: four triangles.
-void add_leaf(Surface& s, const dvec3& foot, const dvec3& along, const dvec3& across, double fold) {
+void add_leaf(MeshSurface& s, const dvec3& foot, const dvec3& along, const dvec3& across, double fold) {
   const dvec3 down = unit(glm::cross(along, across)) * fold;
   const dvec3 middle = foot + along * 0.4, tip = foot + along;
   for (const double side : {-1.0, 1.0}) {
@@ -55,7 +55,7 @@ void add_leaf(Surface& s, const dvec3& foot, const dvec3& along, const dvec3& ac
 
 // Twigs leave the joints of the upper part in turn to both sides and carry leaves in fans.
 void add_leaves(Model& model, Pcg& random, const Culm& culm, int leaves, int sides) {
-  Surface& wood = model.pieces[0].surface;
+  MeshSurface& wood = model.pieces[0].surface;
   const int first = culm.joints / 4, fans = std::max(1, leaves / 5);
   for (int fan = 0; fan < fans; ++fan) {
     const double t = (first + random.below(culm.joints - first) + 0.02) / culm.joints;
@@ -70,7 +70,7 @@ void add_leaves(Model& model, Pcg& random, const Culm& culm, int leaves, int sid
       const dvec3 way = unit(unit(end - start) + random_direction(random) * 0.9 + dvec3(0, -0.5, 0));
       const dvec3 across = unit(glm::cross(way, random_direction(random)));
       const double size = random.uniform(0.12, 0.26);
-      Surface& s = model.pieces[random.below(12) == 0 ? 2 : 1].surface;
+      MeshSurface& s = model.pieces[random.below(12) == 0 ? 2 : 1].surface;
       add_leaf(s, end - unit(end - start) * (0.03 * i), way * size, across * (0.13 * size), 0.02 * size);
     }
   }
@@ -87,7 +87,7 @@ Blueprint make(const Parameters& p) {
                {.name = "old culm", .color = {0.5, 0.45, 0.2}, .roughness = 0.45},
                {.name = "leaf", .color = {0.2, 0.45, 0.08}, .roughness = 0.5, .double_sided = true},
                {.name = "yellow leaf", .color = {0.6, 0.55, 0.12}, .roughness = 0.55, .double_sided = true}};
-  Model ground{"ground", {{Surface{}, kSoil}, {Surface{}, kYellowLeaf}}};
+  Model ground{"ground", {{MeshSurface{}, kSoil}, {MeshSurface{}, kYellowLeaf}}};
   add_panel(ground.pieces[0].surface, {-side, 0, side}, {2 * side, 0, 0}, {0, 0, -2 * side}, 40, 40, 0.4);
   for (int i = 0; i < p.count("fallen_leaves"); ++i) {
     const dvec3 at{random.uniform(-0.5, 0.5) * side, 0.012, random.uniform(-0.5, 0.5) * side};
@@ -99,8 +99,9 @@ Blueprint make(const Parameters& p) {
   for (int i = 0; i < kCulmModels; ++i) {
     const Culm culm{random.uniform(7.0, 11.0), random.uniform(0.035, 0.06), random.uniform(-0.7, 0.7),
                     random.uniform(-0.7, 0.7), 20 + random.below(8)};
-    Model model{"culm",
-                {{Surface{}, i == 0 ? kOldCulm : kCulm}, {Surface{}, kLeaf}, {Surface{}, kYellowLeaf}}};
+    Model model{
+        "culm",
+        {{MeshSurface{}, i == 0 ? kOldCulm : kCulm}, {MeshSurface{}, kLeaf}, {MeshSurface{}, kYellowLeaf}}};
     add_culm(model.pieces[0].surface, culm, sides);
     add_leaves(model, random, culm, p.count("leaves"), sides);
     out.models.push_back(std::move(model));

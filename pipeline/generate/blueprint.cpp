@@ -115,7 +115,7 @@ class GlbEncoder {
   }
 
   json primitive_of(const Piece& piece) {
-    const Surface& s = piece.surface;
+    const MeshSurface& s = piece.surface;
     json attributes;
     add_attribute(attributes, "POSITION", s.positions, "VEC3");
     glm::vec3 low = s.positions.front(), high = low;
@@ -130,7 +130,7 @@ class GlbEncoder {
     return {{"attributes", attributes}, {"indices", add_indices(s)}, {"material", piece.look}};
   }
 
-  int add_indices(const Surface& s) {
+  int add_indices(const MeshSurface& s) {
     if (s.positions.size() > 65535)  // 65535 itself would restart strips
       return add_accessor(s.indices.data(), s.indices.size(), 4, kUint32, "SCALAR", kIndexTarget);
     std::vector<std::uint16_t> narrow(s.indices.size());

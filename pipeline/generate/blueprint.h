@@ -21,7 +21,7 @@ struct Look {
 };
 
 struct Piece {
-  Surface surface;
+  MeshSurface surface;
   int look = 0;
 };
 

@@ -39,8 +39,8 @@ std::vector<Panel> body_panels() {
 }
 
 void add_wheel(Model& wheel, int detail) {
-  Surface &rubber = wheel.pieces[0].surface, &rim = wheel.pieces[1].surface;
-  const auto turned = [](Surface& s, const std::vector<glm::dvec2>& profile, int around) {
+  MeshSurface &rubber = wheel.pieces[0].surface, &rim = wheel.pieces[1].surface;
+  const auto turned = [](MeshSurface& s, const std::vector<glm::dvec2>& profile, int around) {
     // (radius, z) about the z axis; outside lies to the right of the way along the profile.
     add_grid(s, around, static_cast<int>(profile.size()) - 1, true, false, [&](double u, double v) {
       const glm::dvec2 p =
@@ -73,7 +73,7 @@ void add_wheel(Model& wheel, int detail) {
 
 // Kidneys, handles, mirrors, exhaust: what catches light beside the panels.
 void add_trim(Model& car, int detail) {
-  Surface &chrome = car.pieces[kChrome].surface, &dark = car.pieces[kDark].surface;
+  MeshSurface &chrome = car.pieces[kChrome].surface, &dark = car.pieces[kDark].surface;
   for (const double side : {-1.0, 1.0}) {
     const dvec3 middle(2.232, 0.56, side * 0.15);
     add_grid(chrome, std::max(6, detail), 6 * detail, true, true, [&](double u, double v) {
@@ -95,7 +95,7 @@ void add_trim(Model& car, int detail) {
                0.011, std::max(6, detail), true);
     }
     const dvec3 mirror = body_point(11.45, 6.2) * dvec3(1, 1, side) + dvec3(0, 0.02, side * 0.12);
-    Surface& paint = car.pieces[kPaint].surface;
+    MeshSurface& paint = car.pieces[kPaint].surface;
     add_grid(paint, 4 * detail, 2 * detail, true, false, [&](double u, double v) {
       const double turn = -2 * kPi * u, rise = kPi * (v - 0.5);
       return mirror + dvec3(0.07 * exact_cos(turn) * exact_cos(rise), 0.06 * exact_sin(rise),
@@ -122,8 +122,8 @@ Blueprint make(const Parameters& p) {
       {.name = "rubber", .color = {0.03, 0.03, 0.03}, .roughness = 0.8},
       {.name = "lamp", .color = {0.7, 0.72, 0.75}, .metallic = 0.4, .roughness = 0.2},
       {.name = "red lamp", .color = {0.5, 0.02, 0.02}, .roughness = 0.2}};
-  Model car{"car", {}}, wheel{"wheel", {{Surface{}, kRubber}, {Surface{}, kChrome}}};
-  for (int look = kPaint; look <= kRedLamp; ++look) car.pieces.push_back({Surface{}, look});
+  Model car{"car", {}}, wheel{"wheel", {{MeshSurface{}, kRubber}, {MeshSurface{}, kChrome}}};
+  for (int look = kPaint; look <= kRedLamp; ++look) car.pieces.push_back({MeshSurface{}, look});
   const int detail = std::clamp(static_cast<int>(std::sqrt(triangles) / 70.0), 3, 40);
   add_wheel(wheel, detail);
   add_trim(car, detail);

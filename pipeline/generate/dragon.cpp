@@ -47,7 +47,7 @@ Blueprint make(const Parameters& p) {
   const int along = std::max(3, static_cast<int>(quads / around));
   Blueprint out;
   out.looks = {{.name = "jade", .color = {0.25, 0.5, 0.3}, .roughness = 0.35}};
-  Model model{"dragon", {{Surface{}, 0}}};
+  Model model{"dragon", {{MeshSurface{}, 0}}};
   add_grid(model.pieces[0].surface, around, along, true, true,
            [&](double u, double v) { return body_point(body, u, v); });
   out.models.push_back(std::move(model));

@@ -54,9 +54,9 @@ std::vector<std::uint8_t> grass_png(Pcg& random, int size) {
 }
 
 Model ground_model(double side) {
-  Model out{"ground", {{Surface{}, kGround}}};
+  Model out{"ground", {{MeshSurface{}, kGround}}};
   const int n = std::clamp(static_cast<int>(3 * side), 8, 400);
-  Surface& s = out.pieces[0].surface;
+  MeshSurface& s = out.pieces[0].surface;
   add_grid(s, n, n, false, false, [&](double u, double v) {
     const double x = (u - 0.5) * side, z = (0.5 - v) * side;
     return dvec3(x, ground_height(x, z), z);
@@ -66,7 +66,7 @@ Model ground_model(double side) {
 }
 
 Model rock_model(Pcg& random, int detail) {
-  Model out{"rock", {{Surface{}, kRock}}};
+  Model out{"rock", {{MeshSurface{}, kRock}}};
   const double a = random.uniform(0.0, 6.0), b = random.uniform(0.0, 6.0);
   add_grid(out.pieces[0].surface, 2 * detail, detail, true, false, [&](double u, double v) {
     const double turn = -2 * kPi * u, rise = kPi * (0.5 - v) * -1.0;
@@ -79,7 +79,7 @@ Model rock_model(Pcg& random, int detail) {
 }
 
 Model fern_model(Pcg& random, int cards) {
-  Model out{"fern", {{Surface{}, kNarrowLeaves}}};
+  Model out{"fern", {{MeshSurface{}, kNarrowLeaves}}};
   for (int i = 0; i < cards; ++i) {
     const double turn = 2.399963 * i, tilt = random.uniform(0.35, 0.9), length = random.uniform(0.45, 0.7);
     const dvec3 out_way(exact_cos(turn), 0, exact_sin(turn));
@@ -114,7 +114,7 @@ void scatter(Blueprint& out, Pcg& random, double side, const Scatter& what) {
 void add_plant_models(Blueprint& out, Pcg& random, const Parameters& p) {
   const int cards = p.count("leaf_cards");
   for (int i = 0; i < kTreeModels; ++i) {
-    Model tree{"tree", {{Surface{}, kBark}, {Surface{}, i % 2 == 0 ? kBroadLeaves : kNarrowLeaves}}};
+    Model tree{"tree", {{MeshSurface{}, kBark}, {MeshSurface{}, i % 2 == 0 ? kBroadLeaves : kNarrowLeaves}}};
     add_tree(tree.pieces[0].surface, tree.pieces[1].surface, random,
              {.height_m = 7.5 + i,
               .trunk_radius_m = 0.16 + 0.02 * i,
@@ -124,12 +124,12 @@ void add_plant_models(Blueprint& out, Pcg& random, const Parameters& p) {
     out.models.push_back(std::move(tree));
   }
   for (int i = 0; i < kBushModels; ++i) {
-    Model bush{"bush", {{Surface{}, i == 1 ? kNarrowLeaves : kBroadLeaves}}};
+    Model bush{"bush", {{MeshSurface{}, i == 1 ? kNarrowLeaves : kBroadLeaves}}};
     add_bush(bush.pieces[0].surface, random, 0.8, std::max(1, cards / 8), 0.38);
     out.models.push_back(std::move(bush));
   }
   for (int i = 0; i < kTuftModels; ++i) {
-    Model tuft{"tuft", {{Surface{}, kGrass}}};
+    Model tuft{"tuft", {{MeshSurface{}, kGrass}}};
     add_tuft(tuft.pieces[0].surface, random, 5, 0.38);
     out.models.push_back(std::move(tuft));
   }

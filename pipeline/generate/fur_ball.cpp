@@ -24,7 +24,7 @@ dvec3 comb(const Fur& fur, const dvec3& n) {
   return way;
 }
 
-void add_hair(Surface& s, Pcg& random, const Fur& fur) {
+void add_hair(MeshSurface& s, Pcg& random, const Fur& fur) {
   const dvec3 n = random_direction(random);
   const dvec3 lean = comb(fur, n) * 0.5 + random_direction(random) * 0.3 + dvec3(0, -0.35, 0);
   const double length = fur.length_m * random.uniform(0.6, 1.0), curl = random.uniform(0.02, 0.05) * length;
@@ -74,7 +74,7 @@ Blueprint make(const Parameters& p) {
   for (int i = 0; i < 3; ++i)
     out.looks.push_back(
         {.name = "hair " + std::to_string(i), .color = colors[i], .roughness = 0.45, .double_sided = true});
-  Model ball{"fur ball", {{Surface{}, 0}, {Surface{}, 1}, {Surface{}, 2}, {Surface{}, 3}}};
+  Model ball{"fur ball", {{MeshSurface{}, 0}, {MeshSurface{}, 1}, {MeshSurface{}, 2}, {MeshSurface{}, 3}}};
   add_grid(ball.pieces[0].surface, 96, 48, true, false, [](double u, double v) {
     const double turn = -2 * kPi * u, rise = kPi * (v - 0.5);
     return dvec3(exact_cos(turn) * exact_cos(rise), exact_sin(rise), exact_sin(turn) * exact_cos(rise)) *

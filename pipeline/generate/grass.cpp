@@ -30,7 +30,7 @@ glm::dvec3 spine(const Blade& b, double t) {
   return b.foot + glm::dvec3(0, b.height * t, 0) + b.lean * (t * t);
 }
 
-void add_blade(Surface& s, const Blade& b, int segments) {
+void add_blade(MeshSurface& s, const Blade& b, int segments) {
   const auto edge = [&](int i, double sign) {
     const double t = static_cast<double>(i) / segments;
     return spine(b, t) + b.across * (sign * b.half_width * (1.0 - t));
@@ -50,7 +50,7 @@ Blueprint make(const Parameters& p) {
                          .color = {0.1 + 0.06 * shade, 0.35 + 0.08 * shade, 0.05},
                          .roughness = 0.6,
                          .double_sided = true});
-  Model field{"field", {{Surface{}, 0}, {Surface{}, 1}, {Surface{}, 2}, {Surface{}, 3}}};
+  Model field{"field", {{MeshSurface{}, 0}, {MeshSurface{}, 1}, {MeshSurface{}, 2}, {MeshSurface{}, 3}}};
   add_panel(field.pieces[0].surface, {-side / 2, 0, side / 2}, {side, 0, 0}, {0, 0, -side}, 16, 16);
   for (int i = 0; i < p.count("blades"); ++i) {
     const Blade blade = random_blade(random, side, p.number("height_m"), p.number("width_ratio"));

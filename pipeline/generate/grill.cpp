@@ -28,7 +28,7 @@ std::vector<dvec3> rounded_frame(double grow, double z, int corner_steps) {
 }
 
 // Bands between frames that grow outward: the painted hood around the opening.
-void add_surround(Surface& paint, int detail) {
+void add_surround(MeshSurface& paint, int detail) {
   const int steps = 2 * detail;
   constexpr double kGrow[] = {0.0, 0.012, 0.035, 0.08, 0.16, 0.22, 0.25, 0.26, 0.262};
   constexpr double kDepth[] = {-0.06, 0.01, 0.035, 0.045, 0.035, 0.0, -0.08, -0.25, -0.8};
@@ -52,7 +52,7 @@ void add_surround(Surface& paint, int detail) {
 // The front bows forward toward its middle.
 double bow(double x) { return 0.03 * (1.0 - x * x / (kHalfWidth * kHalfWidth)); }
 
-void add_bars(Surface& chrome, const Parameters& p) {
+void add_bars(MeshSurface& chrome, const Parameters& p) {
   const int bars = p.count("bars"), sides = p.count("sides"), segments = p.count("segments");
   const double radius = p.number("radius_m"), middle = 0.5 * (kLow + kHigh), half = 0.5 * (kHigh - kLow);
   for (int i = 0; i < bars; ++i) {
@@ -74,7 +74,7 @@ void add_bars(Surface& chrome, const Parameters& p) {
 }
 
 // A painted fender with round edges: |x|^4 + |y|^4 + |z|^4 = 1, from a sphere's directions.
-void add_fender(Surface& paint, const dvec3& center, const dvec3& half, int detail) {
+void add_fender(MeshSurface& paint, const dvec3& center, const dvec3& half, int detail) {
   add_grid(paint, 12 * detail, 8 * detail, true, false, [&](double u, double v) {
     const double turn = -2 * kPi * u, rise = kPi * (v - 0.5);
     const dvec3 n(exact_cos(turn) * exact_cos(rise), exact_sin(rise), exact_sin(turn) * exact_cos(rise));
@@ -83,7 +83,7 @@ void add_fender(Surface& paint, const dvec3& center, const dvec3& half, int deta
   });
 }
 
-void add_mesh(Surface& mesh, double pitch) {
+void add_mesh(MeshSurface& mesh, double pitch) {
   for (double x = -kHalfWidth; x <= kHalfWidth; x += pitch)
     add_tube(mesh, {{x, kLow, -0.075}, {x, kHigh, -0.075}}, 0.0015, 4, false);
   for (double y = kLow; y <= kHigh; y += pitch)
@@ -91,7 +91,7 @@ void add_mesh(Surface& mesh, double pitch) {
 }
 
 void add_lamp(Model& truck, const dvec3& at, int detail) {
-  Surface &chrome = truck.pieces[kChrome].surface, &lens = truck.pieces[kLamp].surface;
+  MeshSurface &chrome = truck.pieces[kChrome].surface, &lens = truck.pieces[kLamp].surface;
   add_ring(chrome, at, {1, 0, 0}, {0, 1, 0}, 0.105, 0.014, 12 * detail, 2 * detail);
   add_grid(lens, 12 * detail, 3 * detail, true, false, [&](double u, double v) {
     const double turn = 2 * kPi * u, r = 0.1 * (1.0 - v);
@@ -116,8 +116,8 @@ Blueprint make(const Parameters& p) {
       {.name = "lamp", .color = {0.75, 0.78, 0.8}, .metallic = 0.3, .roughness = 0.15},
       {.name = "mesh", .color = {0.1, 0.1, 0.1}, .metallic = 0.6, .roughness = 0.4}};
   Model truck{"truck", {}};
-  for (int look = kPaint; look <= kMesh; ++look) truck.pieces.push_back({Surface{}, look});
-  Surface& chrome = truck.pieces[kChrome].surface;
+  for (int look = kPaint; look <= kMesh; ++look) truck.pieces.push_back({MeshSurface{}, look});
+  MeshSurface& chrome = truck.pieces[kChrome].surface;
   add_surround(truck.pieces[kPaint].surface, detail);
   add_bars(chrome, p);
   std::vector<dvec3> frame = rounded_frame(0.012, 0.02, 3 * detail);

@@ -21,7 +21,7 @@ class HouseBuilder {
   HouseBuilder(Pcg& random, const HouseShape& shape) : random_(random), shape_(shape) {
     const HouseLooks& l = shape.looks;
     for (const int look : {l.wall, l.stone, l.wood, l.glass, l.iron, l.roof, l.cloth})
-      model_.pieces.push_back({Surface{}, look});
+      model_.pieces.push_back({MeshSurface{}, look});
     model_.name = "house";
   }
 
@@ -51,15 +51,15 @@ class HouseBuilder {
   }
 
  private:
-  Surface& wall() { return model_.pieces[0].surface; }
-  Surface& stone() { return model_.pieces[1].surface; }
-  Surface& wood() { return model_.pieces[2].surface; }
-  Surface& glass() { return model_.pieces[3].surface; }
-  Surface& iron() { return model_.pieces[4].surface; }
-  Surface& roof() { return model_.pieces[5].surface; }
-  Surface& cloth() { return model_.pieces[6].surface; }
+  MeshSurface& wall() { return model_.pieces[0].surface; }
+  MeshSurface& stone() { return model_.pieces[1].surface; }
+  MeshSurface& wood() { return model_.pieces[2].surface; }
+  MeshSurface& glass() { return model_.pieces[3].surface; }
+  MeshSurface& iron() { return model_.pieces[4].surface; }
+  MeshSurface& roof() { return model_.pieces[5].surface; }
+  MeshSurface& cloth() { return model_.pieces[6].surface; }
 
-  void add_front(const Box& b, double z, Surface& s) {
+  void add_front(const Box& b, double z, MeshSurface& s) {
     if (b.x1 > b.x0 && b.y1 > b.y0)
       add_quad(s, {b.x0, b.y0, z}, {b.x1, b.y0, z}, {b.x1, b.y1, z}, {b.x0, b.y1, z}, kTilesPerM);
   }

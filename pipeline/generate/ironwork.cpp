@@ -22,7 +22,7 @@ std::vector<dvec3> bent(const dvec3& a, const dvec3& b, const dvec3& c, int segm
 
 }  // namespace
 
-void add_ring(Surface& s, const dvec3& center, const dvec3& x, const dvec3& y, double radius,
+void add_ring(MeshSurface& s, const dvec3& center, const dvec3& x, const dvec3& y, double radius,
               double wire_radius, int segments, int sides) {
   const dvec3 axis = glm::cross(x, y);
   add_grid(s, sides, segments, true, true, [&](double u, double v) {
@@ -32,7 +32,7 @@ void add_ring(Surface& s, const dvec3& center, const dvec3& x, const dvec3& y, d
   });
 }
 
-void add_scroll(Surface& s, const dvec3& foot, const dvec3& x, const dvec3& y, double size,
+void add_scroll(MeshSurface& s, const dvec3& foot, const dvec3& x, const dvec3& y, double size,
                 double wire_radius, int segments, int sides) {
   // r = a (1 - t)^1.2 over one turn and a half.
   std::vector<dvec3> path;
@@ -45,7 +45,7 @@ void add_scroll(Surface& s, const dvec3& foot, const dvec3& x, const dvec3& y, d
   add_tube(s, path, wire_radius, sides, true);
 }
 
-void add_railing(Surface& s, const dvec3& from, const dvec3& to, const RailingShape& shape) {
+void add_railing(MeshSurface& s, const dvec3& from, const dvec3& to, const RailingShape& shape) {
   const double length = length_of(to - from);
   const dvec3 along = (to - from) / length, up(0, 1, 0);
   const int bars = std::max(1, static_cast<int>(length * shape.bars_per_m));
@@ -66,7 +66,7 @@ void add_railing(Surface& s, const dvec3& from, const dvec3& to, const RailingSh
   }
 }
 
-void add_chair(Surface& iron, Surface& seat, double bar_radius_m, int sides) {
+void add_chair(MeshSurface& iron, MeshSurface& seat, double bar_radius_m, int sides) {
   constexpr double kHalf = 0.2, kSeat = 0.46, kBack = 0.88;
   for (const double x : {-kHalf, kHalf}) {
     add_tube(iron, bent({x * 1.12, 0, kHalf * 1.15}, {x, 0.3, kHalf}, {x, kSeat, kHalf}, 6), bar_radius_m,
@@ -92,7 +92,7 @@ void add_chair(Surface& iron, Surface& seat, double bar_radius_m, int sides) {
   }
 }
 
-void add_table(Surface& iron, Surface& top, double radius_m, int sides) {
+void add_table(MeshSurface& iron, MeshSurface& top, double radius_m, int sides) {
   constexpr double kHeight = 0.73;
   const int around = 6 * sides;
   add_lathe(top, {0, kHeight, 0}, {{0.0, 0.0}, {radius_m, 0.0}}, around);
@@ -109,8 +109,8 @@ void add_table(Surface& iron, Surface& top, double radius_m, int sides) {
   }
 }
 
-void add_spoked_wheel(Surface& iron, Surface& tire, const dvec3& center, const dvec3& x, const dvec3& y,
-                      double radius_m, int spokes, int sides) {
+void add_spoked_wheel(MeshSurface& iron, MeshSurface& tire, const dvec3& center, const dvec3& x,
+                      const dvec3& y, double radius_m, int spokes, int sides) {
   const dvec3 axis = glm::cross(x, y);
   const int around = std::max(24, 8 * sides);
   add_ring(tire, center, x, y, radius_m, 0.014, around, sides);

@@ -6,11 +6,11 @@
 namespace hwsim::pipeline::generate {
 
 /// A torus in the plane of two unit vectors.
-void add_ring(Surface& s, const glm::dvec3& center, const glm::dvec3& x, const glm::dvec3& y, double radius,
-              double wire_radius, int segments, int sides);
+void add_ring(MeshSurface& s, const glm::dvec3& center, const glm::dvec3& x, const glm::dvec3& y,
+              double radius, double wire_radius, int segments, int sides);
 
 /// A spiral that rolls up in the plane of two unit vectors: from `foot`, along y, turning toward x.
-void add_scroll(Surface& s, const glm::dvec3& foot, const glm::dvec3& x, const glm::dvec3& y, double size,
+void add_scroll(MeshSurface& s, const glm::dvec3& foot, const glm::dvec3& x, const glm::dvec3& y, double size,
                 double wire_radius, int segments, int sides);
 
 struct RailingShape {
@@ -22,16 +22,16 @@ struct RailingShape {
   bool spears = false;  ///< pointed bars above the upper rail
 };
 /// On the line from one point to another, upright.
-void add_railing(Surface& s, const glm::dvec3& from, const glm::dvec3& to, const RailingShape& shape);
+void add_railing(MeshSurface& s, const glm::dvec3& from, const glm::dvec3& to, const RailingShape& shape);
 
 /// A chair at the origin that faces +z: round legs and back, seat of slats.
-void add_chair(Surface& iron, Surface& seat, double bar_radius_m, int sides);
+void add_chair(MeshSurface& iron, MeshSurface& seat, double bar_radius_m, int sides);
 
 /// A round table at the origin: top, leg and three bent feet.
-void add_table(Surface& iron, Surface& top, double radius_m, int sides);
+void add_table(MeshSurface& iron, MeshSurface& top, double radius_m, int sides);
 
 /// A wheel with wire spokes in the plane of x and y through `center`.
-void add_spoked_wheel(Surface& iron, Surface& tire, const glm::dvec3& center, const glm::dvec3& x,
+void add_spoked_wheel(MeshSurface& iron, MeshSurface& tire, const glm::dvec3& center, const glm::dvec3& x,
                       const glm::dvec3& y, double radius_m, int spokes, int sides);
 
 }  // namespace hwsim::pipeline::generate

@@ -14,7 +14,7 @@ enum LookIndex { kSteel, kBrass, kBlackSteel, kRubber };
 
 // A shell woven of rods along both directions of point(u, v).
 template <class Point>
-void add_woven_shell(Surface& s, int rods_u, int rods_v, double radius, int sides, int segments,
+void add_woven_shell(MeshSurface& s, int rods_u, int rods_v, double radius, int sides, int segments,
                      Point point) {
   for (int direction = 0; direction < 2; ++direction) {
     const int rods = direction == 0 ? rods_u : rods_v;
@@ -36,8 +36,8 @@ struct Rods {
 };
 
 Model wire_chair(const Rods& rods, int look) {
-  Model out{"wire chair", {{Surface{}, look}}};
-  Surface& s = out.pieces[0].surface;
+  Model out{"wire chair", {{MeshSurface{}, look}}};
+  MeshSurface& s = out.pieces[0].surface;
   // The seat curves up into the back; edges bend outward.
   add_woven_shell(s, rods.weave, rods.weave, rods.radius, rods.sides, rods.segments, [](double u, double v) {
     const double x = (u - 0.5) * (0.62 - 0.12 * v), edge = (2 * u - 1) * (2 * u - 1);
@@ -59,8 +59,8 @@ Model wire_chair(const Rods& rods, int look) {
 }
 
 Model basket(const Rods& rods, int look) {
-  Model out{"basket", {{Surface{}, look}}};
-  Surface& s = out.pieces[0].surface;
+  Model out{"basket", {{MeshSurface{}, look}}};
+  MeshSurface& s = out.pieces[0].surface;
   const auto radius_at = [](double y) { return 0.2 + 0.1 * exact_sin(1.9 * y / 0.42); };
   for (int i = 0; i <= rods.weave; ++i) {
     const double y = 0.42 * i / rods.weave;
@@ -80,7 +80,7 @@ Model basket(const Rods& rods, int look) {
 }
 
 Model spring(const Rods& rods, int look, double turns) {
-  Model out{"spring", {{Surface{}, look}}};
+  Model out{"spring", {{MeshSurface{}, look}}};
   std::vector<dvec3> path;
   const int steps = static_cast<int>(turns * rods.segments);
   for (int i = 0; i <= steps; ++i) {
@@ -102,10 +102,10 @@ Blueprint make(const Parameters& p) {
                {.name = "rubber", .color = {0.04, 0.04, 0.04}, .roughness = 0.9}};
   out.models = {wire_chair(rods, kSteel), wire_chair(rods, kBlackSteel), basket(rods, kSteel),
                 basket(rods, kBrass),     spring(rods, kSteel, 12.0),    spring(rods, kBrass, 7.0)};
-  Model wheel{"wheel", {{Surface{}, kSteel}, {Surface{}, kRubber}}};
+  Model wheel{"wheel", {{MeshSurface{}, kSteel}, {MeshSurface{}, kRubber}}};
   add_spoked_wheel(wheel.pieces[0].surface, wheel.pieces[1].surface, {0, 0.33, 0}, {1, 0, 0}, {0, 1, 0}, 0.32,
                    4 * rods.weave, rods.sides);
-  Model railing{"railing", {{Surface{}, kBlackSteel}}};
+  Model railing{"railing", {{MeshSurface{}, kBlackSteel}}};
   add_railing(railing.pieces[0].surface, {-1.0, 0, 0}, {1.0, 0, 0},
               {1.0, 9.0, 2 * rods.radius, rods.sides, true, true});
   out.models.push_back(std::move(wheel));

@@ -59,8 +59,8 @@ std::vector<Look> all_looks() {
 }
 
 Model ground_model(double length) {
-  Model out{"ground", {{Surface{}, kPaving}, {Surface{}, kStone}}};
-  Surface &paving = out.pieces[0].surface, &stone = out.pieces[1].surface;
+  Model out{"ground", {{MeshSurface{}, kPaving}, {MeshSurface{}, kStone}}};
+  MeshSurface &paving = out.pieces[0].surface, &stone = out.pieces[1].surface;
   const double wide = kStreetHalf + kWalk + 12.0;
   add_panel(paving, {-wide, 0, 14}, {2 * wide, 0, 0}, {0, 0, -length - 30}, 40, 80, 0.4);
   for (const double side : {-1.0, 1.0}) {
@@ -71,7 +71,7 @@ Model ground_model(double length) {
 }
 
 Model parasol_model(int sides, int cloth) {
-  Model out{"parasol", {{Surface{}, kBrownWood}, {Surface{}, cloth}}};
+  Model out{"parasol", {{MeshSurface{}, kBrownWood}, {MeshSurface{}, cloth}}};
   add_tube(out.pieces[0].surface, {{0, 0, 0}, {0, 2.7, 0}}, 0.025, 2 * sides, true);
   constexpr int kRibs = 8;
   add_grid(out.pieces[1].surface, 4 * kRibs, 6, true, false, [&](double u, double v) {
@@ -88,8 +88,8 @@ Model parasol_model(int sides, int cloth) {
 }
 
 Model lamp_model(int sides) {
-  Model out{"lamp post", {{Surface{}, kIron}, {Surface{}, kLamp}}};
-  Surface& iron = out.pieces[0].surface;
+  Model out{"lamp post", {{MeshSurface{}, kIron}, {MeshSurface{}, kLamp}}};
+  MeshSurface& iron = out.pieces[0].surface;
   add_lathe(iron, {},
             {{0.16, 0}, {0.16, 0.25}, {0.08, 0.4}, {0.06, 0.9}, {0.085, 0.95}, {0.05, 1.0}, {0.035, 3.2}},
             2 * sides);
@@ -104,9 +104,9 @@ Model lamp_model(int sides) {
 }
 
 Model cafe_set_model(int sides, double bar_radius_m) {
-  Model out{"cafe set", {{Surface{}, kIron}, {Surface{}, kBrownWood}, {Surface{}, kStone}}};
+  Model out{"cafe set", {{MeshSurface{}, kIron}, {MeshSurface{}, kBrownWood}, {MeshSurface{}, kStone}}};
   add_table(out.pieces[0].surface, out.pieces[2].surface, 0.42, sides);
-  Surface iron, seat;
+  MeshSurface iron, seat;
   add_chair(iron, seat, bar_radius_m, sides);
   for (int i = 0; i < 4; ++i) {
     const double turn = 0.5 * kPi * i + 0.35;
@@ -118,17 +118,17 @@ Model cafe_set_model(int sides, double bar_radius_m) {
 }
 
 Model tree_model(Pcg& random, int cards) {
-  Model out{"tree", {{Surface{}, kBark}, {Surface{}, kLeaves}, {Surface{}, kStone}}};
+  Model out{"tree", {{MeshSurface{}, kBark}, {MeshSurface{}, kLeaves}, {MeshSurface{}, kStone}}};
   add_tree(out.pieces[0].surface, out.pieces[1].surface, random,
            {.height_m = 6.5, .trunk_radius_m = 0.13, .branch_levels = 2, .cards = cards, .card_m = 0.42});
   return out;
 }
 
 Model flower_pot_model(Pcg& random, int sides) {
-  Model out{"pot", {{Surface{}, kRoof}, {Surface{}, kLeaves}}};
+  Model out{"pot", {{MeshSurface{}, kRoof}, {MeshSurface{}, kLeaves}}};
   add_lathe(out.pieces[0].surface, {},
             {{0.2, 0}, {0.3, 0.42}, {0.34, 0.42}, {0.34, 0.5}, {0.29, 0.5}, {0.28, 0.42}}, 3 * sides);
-  Surface bush;
+  MeshSurface bush;
   add_bush(bush, random, 0.4, 60, 0.22);
   add_turned(out.pieces[1].surface, bush, 0.0, {0, 0.45, 0});
   return out;
@@ -206,7 +206,7 @@ Blueprint make(const Parameters& p) {
     out.models.push_back(std::move(model));
     return static_cast<int>(out.models.size()) - 1;
   };
-  Model fence{"fence", {{Surface{}, kIron}}};
+  Model fence{"fence", {{MeshSurface{}, kIron}}};
   add_railing(fence.pieces[0].surface, {-2.2, 0, 0}, {2.2, 0, 0},
               {0.95, p.number("bars_per_m"), 0.009, sides, true, true});
   models.fence = add(std::move(fence));

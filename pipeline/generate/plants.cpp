@@ -12,7 +12,7 @@ struct Twig {
 };
 
 struct TreeBuilder {
-  Surface& wood;
+  MeshSurface& wood;
   Pcg& random;
   int levels;
   std::vector<Twig> twigs;
@@ -57,7 +57,7 @@ dvec3 random_direction(Pcg& random) {
   return {r * exact_cos(turn), y, r * exact_sin(turn)};
 }
 
-void add_card(Surface& s, const dvec3& foot, const dvec3& up, const dvec3& across) {
+void add_card(MeshSurface& s, const dvec3& foot, const dvec3& up, const dvec3& across) {
   const glm::vec3 normal(unit(glm::cross(across, up)));
   const auto first = static_cast<std::uint32_t>(s.positions.size());
   const dvec3 half = across * 0.5;
@@ -70,7 +70,7 @@ void add_card(Surface& s, const dvec3& foot, const dvec3& up, const dvec3& acros
   s.indices.insert(s.indices.end(), {first, first + 1, first + 2, first, first + 2, first + 3});
 }
 
-void add_tree(Surface& wood, Surface& leaves, Pcg& random, const TreeShape& shape) {
+void add_tree(MeshSurface& wood, MeshSurface& leaves, Pcg& random, const TreeShape& shape) {
   TreeBuilder builder{wood, random, shape.branch_levels, {}};
   builder.grow({}, {0, 1, 0}, shape.height_m * 0.62, shape.trunk_radius_m, 0);
   for (int i = 0; i < shape.cards; ++i) {
@@ -84,7 +84,7 @@ void add_tree(Surface& wood, Surface& leaves, Pcg& random, const TreeShape& shap
   }
 }
 
-void add_bush(Surface& leaves, Pcg& random, double radius_m, int cards, double card_m) {
+void add_bush(MeshSurface& leaves, Pcg& random, double radius_m, int cards, double card_m) {
   for (int i = 0; i < cards; ++i) {
     dvec3 out = random_direction(random);
     out.y = std::abs(out.y) * 0.9;
@@ -96,7 +96,7 @@ void add_bush(Surface& leaves, Pcg& random, double radius_m, int cards, double c
   }
 }
 
-void add_tuft(Surface& leaves, Pcg& random, int cards, double height_m) {
+void add_tuft(MeshSurface& leaves, Pcg& random, int cards, double height_m) {
   for (int i = 0; i < cards; ++i) {
     const double turn = random.uniform(0.0, 2.0 * kPi);
     const dvec3 across(exact_cos(turn), 0.0, exact_sin(turn));

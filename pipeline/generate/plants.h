@@ -8,7 +8,7 @@ namespace hwsim::pipeline::generate {
 glm::dvec3 random_direction(Pcg& random);
 
 /// A quad with the whole texture: its lower edge is centered at `foot`.
-void add_card(Surface& s, const glm::dvec3& foot, const glm::dvec3& up, const glm::dvec3& across);
+void add_card(MeshSurface& s, const glm::dvec3& foot, const glm::dvec3& up, const glm::dvec3& across);
 
 struct TreeShape {
   double height_m = 6.0;
@@ -19,12 +19,12 @@ struct TreeShape {
 };
 
 /// Stands at the origin.
-void add_tree(Surface& wood, Surface& leaves, Pcg& random, const TreeShape& shape);
+void add_tree(MeshSurface& wood, MeshSurface& leaves, Pcg& random, const TreeShape& shape);
 
 /// A round bush of cards around the origin, whose lower half is cut off.
-void add_bush(Surface& leaves, Pcg& random, double radius_m, int cards, double card_m);
+void add_bush(MeshSurface& leaves, Pcg& random, double radius_m, int cards, double card_m);
 
 /// Cards that lean outward from one foot.
-void add_tuft(Surface& leaves, Pcg& random, int cards, double height_m);
+void add_tuft(MeshSurface& leaves, Pcg& random, int cards, double height_m);
 
 }  // namespace hwsim::pipeline::generate

@@ -17,7 +17,7 @@ struct Plant {
 
 enum LookIndex { kSteel, kPipe, kHotPipe, kRail, kConcrete, kTank };
 
-void add_beam(Surface& s, const dvec3& low, const dvec3& size, double flange) {
+void add_beam(MeshSurface& s, const dvec3& low, const dvec3& size, double flange) {
   // Two flanges and a web, along the longest side.
   const bool vertical = size.y > size.x && size.y > size.z;
   const dvec3 high = low + size;
@@ -40,7 +40,7 @@ void add_beam(Surface& s, const dvec3& low, const dvec3& size, double flange) {
             {0.5 * (low.x + high.x + t), high.y - t, high.z});
 }
 
-void add_frame(Surface& s, const Plant& plant) {
+void add_frame(MeshSurface& s, const Plant& plant) {
   constexpr double kBay = 5.0, kSize = 0.3;
   for (double x = 0; x <= plant.width; x += kBay)
     for (double z = 0; z <= plant.depth; z += kBay)
@@ -54,13 +54,13 @@ void add_frame(Surface& s, const Plant& plant) {
   }
 }
 
-void add_grating(Surface& s, const Plant& plant, int level, double pitch) {
+void add_grating(MeshSurface& s, const Plant& plant, int level, double pitch) {
   const double y = level * plant.level_height, z0 = 0.35 * plant.depth;
   for (double x = 0; x < plant.width; x += pitch)
     add_box(s, {x, y, z0}, {x + 0.008, y + 0.03, z0 + 0.15 * plant.depth});
 }
 
-void add_railing(Surface& s, const Plant& plant, int level) {
+void add_railing(MeshSurface& s, const Plant& plant, int level) {
   const double y = level * plant.level_height;
   for (const double z : {0.35 * plant.depth, 0.5 * plant.depth}) {
     for (const double height : {0.4, 0.75, 1.1})
@@ -103,7 +103,7 @@ void add_pipes(Model& model, Pcg& random, const Plant& plant, const Parameters& 
   for (int i = 0; i < p.count("pipes"); ++i) {
     const double radius = random.uniform(0.02, 0.16);
     const bool hot = random.below(4) == 0;
-    Surface& s = model.pieces[hot ? kHotPipe : kPipe].surface;
+    MeshSurface& s = model.pieces[hot ? kHotPipe : kPipe].surface;
     const std::vector<dvec3> path = pipe_path(random, plant, 2 + random.below(5), 2.0 * radius);
     add_tube(s, path, radius, p.count("sides"), true);
     add_tube(s, {path.front(), path.front() + unit(path[1] - path[0]) * 0.04}, radius * 1.5, p.count("sides"),
@@ -111,7 +111,7 @@ void add_pipes(Model& model, Pcg& random, const Plant& plant, const Parameters& 
   }
 }
 
-void add_tanks(Surface& s, Pcg& random, const Plant& plant, int sides) {
+void add_tanks(MeshSurface& s, Pcg& random, const Plant& plant, int sides) {
   for (int i = 0; i < 5; ++i) {
     const double radius = random.uniform(0.8, 1.4), height = random.uniform(2.0, 3.4);
     std::vector<glm::dvec2> profile = {{radius, 0.0}, {radius, height}};
@@ -135,7 +135,7 @@ Blueprint make(const Parameters& p) {
                {.name = "concrete", .color = {0.45, 0.44, 0.42}, .roughness = 1.0},
                {.name = "tank", .color = {0.75, 0.76, 0.78}, .metallic = 0.6, .roughness = 0.3}};
   Model model{"plant", {}};
-  for (int look = kSteel; look <= kTank; ++look) model.pieces.push_back({Surface{}, look});
+  for (int look = kSteel; look <= kTank; ++look) model.pieces.push_back({MeshSurface{}, look});
   add_panel(model.pieces[kConcrete].surface, {-10, 0, plant.depth + 20}, {plant.width + 20, 0, 0},
             {0, 0, -plant.depth - 30}, 30, 30);
   add_frame(model.pieces[kSteel].surface, plant);

@@ -177,7 +177,7 @@ double panel_area(const Panel& panel) {
   return size.x * size.y;
 }
 
-void add_body_panel(Surface& surface, const Panel& panel, bool mirrored, double quads) {
+void add_body_panel(MeshSurface& surface, const Panel& panel, bool mirrored, double quads) {
   constexpr double kRollRadius = 0.004;
   const dvec2 size = panel_size(panel);
   const int nu = std::max(4, static_cast<int>(std::sqrt(quads * size.x / size.y) + 0.5));

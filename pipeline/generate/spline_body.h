@@ -31,6 +31,6 @@ struct Panel {
 double panel_area(const Panel& panel);
 
 /// About `quads` quads of about equal size; `mirrored`: the right side's panel.
-void add_body_panel(Surface& s, const Panel& panel, bool mirrored, double quads);
+void add_body_panel(MeshSurface& s, const Panel& panel, bool mirrored, double quads);
 
 }  // namespace hwsim::pipeline::generate

@@ -34,14 +34,14 @@ Model column_model(int detail) {
   for (const dvec2 p :
        {dvec2(0.28, 2.76), dvec2(0.28, 2.82), dvec2(0.34, 2.9), dvec2(0.42, 3.0), dvec2(0.42, 3.1)})
     profile.push_back(p);
-  Model out{"column", {{Surface{}, kStoneLook}}};
+  Model out{"column", {{MeshSurface{}, kStoneLook}}};
   add_lathe(out.pieces[0].surface, {}, profile, 2 * detail);
   return out;
 }
 
 // Between two columns, along x, from height 3.1: half a ring, and the wall above it up to `top`.
 Model arch_model(int detail, double top) {
-  Model out{"arch", {{Surface{}, kStoneLook}, {Surface{}, kBrickLook}}};
+  Model out{"arch", {{MeshSurface{}, kStoneLook}, {MeshSurface{}, kBrickLook}}};
   constexpr double kSpring = 3.1, kRadius = 0.5 * kBay - kColumnRadius, kHalf = 0.5 * kBay;
   const double apex = std::min(top - kSpring - 0.05, kRadius);
   const auto on_arch = [&](int i) {
@@ -67,13 +67,13 @@ Model baluster_model(int detail) {
     const double t = static_cast<double>(i) / detail;
     profile.push_back({0.05 + 0.025 * exact_sin(2.0 * kPi * t + 4.4), 0.8 * t});
   }
-  Model out{"baluster", {{Surface{}, kStoneLook}}};
+  Model out{"baluster", {{MeshSurface{}, kStoneLook}}};
   add_lathe(out.pieces[0].surface, {}, profile, std::max(6, detail));
   return out;
 }
 
 Model curtain_model(int detail, int look, double phase) {
-  Model out{"curtain", {{Surface{}, look}}};
+  Model out{"curtain", {{MeshSurface{}, look}}};
   const double width = kBay - 2.2 * kColumnRadius;
   add_grid(out.pieces[0].surface, 3 * detail, 4 * detail, false, false, [&](double u, double v) {
     const double folds = exact_sin(2.0 * kPi * 6.0 * u + phase + 0.7 * exact_sin(3.0 * v + phase));
@@ -84,8 +84,8 @@ Model curtain_model(int detail, int look, double phase) {
 
 // Floors, outer walls and cornices; x runs from 0 to the hall's length, the court lies between z = -3 and 3.
 Model shell_model(int bays, int detail) {
-  Model out{"shell", {{Surface{}, kFloorLook}, {Surface{}, kBrickLook}, {Surface{}, kStoneLook}}};
-  Surface &floor = out.pieces[0].surface, &brick = out.pieces[1].surface, &stone = out.pieces[2].surface;
+  Model out{"shell", {{MeshSurface{}, kFloorLook}, {MeshSurface{}, kBrickLook}, {MeshSurface{}, kStoneLook}}};
+  MeshSurface &floor = out.pieces[0].surface, &brick = out.pieces[1].surface, &stone = out.pieces[2].surface;
   const double length = bays * kBay, outer = kCourtHalf + kAisle, height = kFloorHeight + kUpperHeight;
   add_panel(floor, {0, 0, outer}, {length, 0, 0}, {0, 0, -2 * outer}, bays * detail, 4 * detail, 0.5);
   for (const double side : {-1.0, 1.0}) {

@@ -14,7 +14,7 @@ double distance(const dvec3& a, const dvec3& b) {
   return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
 }
 
-std::uint32_t add_vertex(Surface& s, const dvec3& position, const dvec3& normal, const dvec2& uv) {
+std::uint32_t add_vertex(MeshSurface& s, const dvec3& position, const dvec3& normal, const dvec2& uv) {
   s.positions.emplace_back(position);
   s.normals.emplace_back(normal);
   s.uvs.emplace_back(uv);
@@ -22,7 +22,7 @@ std::uint32_t add_vertex(Surface& s, const dvec3& position, const dvec3& normal,
 }
 
 // Quads between rows of a vertex grid that begins at `base`, with `columns` vertices a row.
-void add_grid_indices(Surface& s, std::uint32_t base, int rows, int columns, bool wrap_rows,
+void add_grid_indices(MeshSurface& s, std::uint32_t base, int rows, int columns, bool wrap_rows,
                       bool wrap_columns) {
   const int row_quads = wrap_rows ? rows : rows - 1, column_quads = wrap_columns ? columns : columns - 1;
   const auto at = [&](int r, int c) {
@@ -57,7 +57,8 @@ dvec3 around(const Ring& ring, int i, int sides) {
   return ring.side * exact_cos(angle) + ring.up * exact_sin(angle);
 }
 
-void add_cap(Surface& s, const dvec3& center, const Ring& ring, double radius, int sides, double direction) {
+void add_cap(MeshSurface& s, const dvec3& center, const Ring& ring, double radius, int sides,
+             double direction) {
   const dvec3 normal = ring.tangent * direction;
   const std::uint32_t middle = add_vertex(s, center, normal, dvec2(0.5));
   for (int i = 0; i < sides; ++i) add_vertex(s, center + around(ring, i, sides) * radius, normal, dvec2(0.5));
@@ -70,7 +71,8 @@ void add_cap(Surface& s, const dvec3& center, const Ring& ring, double radius, i
 
 }  // namespace
 
-void add_quad(Surface& s, const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d, double uv_per_m) {
+void add_quad(MeshSurface& s, const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d,
+              double uv_per_m) {
   const dvec3 normal = unit(glm::cross(b - a, d - a));
   const double u = distance(a, b) * uv_per_m, v = distance(a, d) * uv_per_m;
   const std::uint32_t first = add_vertex(s, a, normal, {0, v});
@@ -80,7 +82,7 @@ void add_quad(Surface& s, const dvec3& a, const dvec3& b, const dvec3& c, const 
   s.indices.insert(s.indices.end(), {first, first + 1, first + 2, first, first + 2, first + 3});
 }
 
-void add_triangle(Surface& s, const dvec3& a, const dvec3& b, const dvec3& c) {
+void add_triangle(MeshSurface& s, const dvec3& a, const dvec3& b, const dvec3& c) {
   const dvec3 normal = unit(glm::cross(b - a, c - a));
   const std::uint32_t first = add_vertex(s, a, normal, {0, 1});
   add_vertex(s, b, normal, {1, 1});
@@ -88,7 +90,7 @@ void add_triangle(Surface& s, const dvec3& a, const dvec3& b, const dvec3& c) {
   s.indices.insert(s.indices.end(), {first, first + 1, first + 2});
 }
 
-void add_box(Surface& s, const dvec3& l, const dvec3& h, double uv_per_m) {
+void add_box(MeshSurface& s, const dvec3& l, const dvec3& h, double uv_per_m) {
   add_quad(s, {l.x, l.y, h.z}, {h.x, l.y, h.z}, {h.x, h.y, h.z}, {l.x, h.y, h.z}, uv_per_m);
   add_quad(s, {h.x, l.y, l.z}, {l.x, l.y, l.z}, {l.x, h.y, l.z}, {h.x, h.y, l.z}, uv_per_m);
   add_quad(s, {h.x, l.y, h.z}, {h.x, l.y, l.z}, {h.x, h.y, l.z}, {h.x, h.y, h.z}, uv_per_m);
@@ -97,7 +99,7 @@ void add_box(Surface& s, const dvec3& l, const dvec3& h, double uv_per_m) {
   add_quad(s, {l.x, l.y, l.z}, {h.x, l.y, l.z}, {h.x, l.y, h.z}, {l.x, l.y, h.z}, uv_per_m);
 }
 
-void add_panel(Surface& s, const dvec3& corner, const dvec3& side_u, const dvec3& side_v, int nu, int nv,
+void add_panel(MeshSurface& s, const dvec3& corner, const dvec3& side_u, const dvec3& side_v, int nu, int nv,
                double uv_per_m) {
   const dvec3 normal = unit(glm::cross(side_u, side_v));
   const double length_u = distance(dvec3(0), side_u), length_v = distance(dvec3(0), side_v);
@@ -111,7 +113,7 @@ void add_panel(Surface& s, const dvec3& corner, const dvec3& side_u, const dvec3
   add_grid_indices(s, base, nv + 1, nu + 1, false, false);
 }
 
-void add_tube(Surface& s, const std::vector<dvec3>& path, double radius, int sides, bool caps) {
+void add_tube(MeshSurface& s, const std::vector<dvec3>& path, double radius, int sides, bool caps) {
   const std::vector<Ring> rings = rings_along(path);
   const auto base = static_cast<std::uint32_t>(s.positions.size());
   for (std::size_t r = 0; r < path.size(); ++r)
@@ -126,7 +128,7 @@ void add_tube(Surface& s, const std::vector<dvec3>& path, double radius, int sid
   add_cap(s, path.back(), rings.back(), radius, sides, 1.0);
 }
 
-void add_wire(Surface& s, const std::vector<dvec3>& path, double radius, int sides) {
+void add_wire(MeshSurface& s, const std::vector<dvec3>& path, double radius, int sides) {
   const std::vector<Ring> rings = rings_along(path);
   const auto base = static_cast<std::uint32_t>(s.positions.size());
   for (std::size_t r = 0; r < path.size(); ++r)
@@ -139,7 +141,7 @@ void add_wire(Surface& s, const std::vector<dvec3>& path, double radius, int sid
   add_grid_indices(s, base, static_cast<int>(path.size()), sides, false, true);
 }
 
-void add_lathe(Surface& s, const dvec3& foot, const std::vector<dvec2>& profile, int sides) {
+void add_lathe(MeshSurface& s, const dvec3& foot, const std::vector<dvec2>& profile, int sides) {
   const auto base = static_cast<std::uint32_t>(s.positions.size());
   for (std::size_t r = 0; r < profile.size(); ++r) {
     const dvec2 along = profile[r + 1 < profile.size() ? r + 1 : r] - profile[r > 0 ? r - 1 : r];
@@ -153,7 +155,7 @@ void add_lathe(Surface& s, const dvec3& foot, const std::vector<dvec2>& profile,
   add_grid_indices(s, base, static_cast<int>(profile.size()), sides + 1, false, false);
 }
 
-void add_grid(Surface& s, int nu, int nv, bool closed_u, bool closed_v,
+void add_grid(MeshSurface& s, int nu, int nv, bool closed_u, bool closed_v,
               const std::function<dvec3(double, double)>& point) {
   const int columns = closed_u ? nu : nu + 1, rows = closed_v ? nv : nv + 1;
   const auto base = static_cast<std::uint32_t>(s.positions.size());
@@ -175,7 +177,7 @@ void add_grid(Surface& s, int nu, int nv, bool closed_u, bool closed_v,
   for (std::size_t i = 0; i < sums.size(); ++i) s.normals[base + i] = glm::vec3(unit(sums[i]));
 }
 
-void add_turned(Surface& s, const Surface& part, double turn_rad, const dvec3& offset) {
+void add_turned(MeshSurface& s, const MeshSurface& part, double turn_rad, const dvec3& offset) {
   const double c = exact_cos(turn_rad), d = exact_sin(turn_rad);
   const auto turned = [&](const dvec3& v) { return dvec3(c * v.x + d * v.z, v.y, c * v.z - d * v.x); };
   const auto base = static_cast<std::uint32_t>(s.positions.size());

@@ -43,12 +43,12 @@ struct Pen {
   double cell = 0.0, half_width = 0.0;
 };
 
-void add_stroke(Surface& s, const dvec3& from, const dvec3& to, const Pen& pen) {
+void add_stroke(MeshSurface& s, const dvec3& from, const dvec3& to, const Pen& pen) {
   const dvec3 along = unit(to - from) * pen.half_width, across(-along.y, along.x, 0.0);
   add_quad(s, from - along - across, to + along - across, to + along + across, from - along + across);
 }
 
-void add_letter(Surface& s, std::string_view strokes, const dvec3& origin, const Pen& pen) {
+void add_letter(MeshSurface& s, std::string_view strokes, const dvec3& origin, const Pen& pen) {
   bool drawing = false;
   dvec3 last(0.0);
   for (std::size_t i = 0; i + 1 < strokes.size(); i += 3) {
@@ -68,7 +68,7 @@ Blueprint make(const Parameters& p) {
   Blueprint out;
   out.looks = {{.name = "paper", .color = {0.92, 0.92, 0.88}, .unlit = true},
                {.name = "ink", .color = {0.02, 0.02, 0.03}, .unlit = true}};
-  Model page{"page", {{Surface{}, 0}, {Surface{}, 1}}};
+  Model page{"page", {{MeshSurface{}, 0}, {MeshSurface{}, 1}}};
   add_panel(page.pieces[0].surface, {-0.5 * width - 0.1, -1.1, 0}, {width + 0.2, 0, 0}, {0, 2.2, 0}, 1, 1);
   for (int line = 0; line < lines; ++line) {
     int left = 2 + random.below(8);  // letters to the next gap

@@ -12,7 +12,7 @@ using glm::dvec3;
 constexpr double kPoleHeight = 8.0, kCrossarmHalf = 1.2;
 
 void add_pole(Model& model) {
-  Surface& wood = model.pieces[0].surface;
+  MeshSurface& wood = model.pieces[0].surface;
   add_tube(wood, {{0, 0, 0}, {0, kPoleHeight + 0.4, 0}}, 0.13, 16, true);
   for (const double height : {kPoleHeight, kPoleHeight - 1.0})
     add_box(wood, {-kCrossarmHalf, height - 0.06, -0.06}, {kCrossarmHalf, height + 0.06, 0.06});
@@ -42,12 +42,12 @@ Blueprint make(const Parameters& p) {
                {.name = "ceramic", .color = {0.5, 0.45, 0.4}, .roughness = 0.3},
                {.name = "wire", .color = {0.05, 0.05, 0.06}, .metallic = 0.5, .roughness = 0.4},
                {.name = "ground", .color = {0.2, 0.26, 0.12}, .roughness = 1.0}};
-  Model pole{"pole", {{Surface{}, 0}, {Surface{}, 1}}};
+  Model pole{"pole", {{MeshSurface{}, 0}, {MeshSurface{}, 1}}};
   add_pole(pole);
-  Model ground{"ground", {{Surface{}, 3}}};
+  Model ground{"ground", {{MeshSurface{}, 3}}};
   const double length = spacing * poles + 40.0;
   add_panel(ground.pieces[0].surface, {-40, 0, 20}, {80, 0, 0}, {0, 0, -length}, 20, 40);
-  Model cables{"wires", {{Surface{}, 2}}};
+  Model cables{"wires", {{MeshSurface{}, 2}}};
   for (int i = 0; i + 1 < poles; ++i)
     for (int line = 0; line < lines; ++line) {
       const double x = lines > 1

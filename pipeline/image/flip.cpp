@@ -26,19 +26,19 @@ glm::vec3 linear_from_xyz(glm::vec3 c) {
           0.0556434f * c.x - 0.2040259f * c.y + 1.0572252f * c.z};
 }
 
-using Planes = std::array<Plane, 3>;
+using Channels = std::array<Channel, 3>;
 
 // Y, Cx, Cz: linear in XYZ, so that filtering commutes with it.
-Planes opponent_planes(const Image& image) {
-  Planes planes = {Plane(image.width, image.height), Plane(image.width, image.height),
-                   Plane(image.width, image.height)};
+Channels opponent_channels(const Image& image) {
+  Channels channels = {Channel(image.width, image.height), Channel(image.width, image.height),
+                       Channel(image.width, image.height)};
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const glm::vec3 t = xyz_from_linear(glm::vec3(image.pixels[i])) / kWhite;
-    planes[0].values[i] = 116.0f * t.y - 16.0f;
-    planes[1].values[i] = 500.0f * (t.x - t.y);
-    planes[2].values[i] = 200.0f * (t.y - t.z);
+    channels[0].values[i] = 116.0f * t.y - 16.0f;
+    channels[1].values[i] = 500.0f * (t.x - t.y);
+    channels[2].values[i] = 200.0f * (t.y - t.z);
   }
-  return planes;
+  return channels;
 }
 
 glm::vec3 linear_from_opponent(float luma, float cx, float cz) {
@@ -58,7 +58,7 @@ double sigma_px(SensitivityTerm term) {
 // Every channel's filter has the radius of the widest Gaussian, b = 0.04, at three deviations.
 int filter_radius_px() { return static_cast<int>(std::ceil(3.0 * sigma_px({1.0, 0.04}))); }
 
-Plane filtered(const Plane& in, SensitivityTerm term) {
+Channel filtered(const Channel& in, SensitivityTerm term) {
   const std::vector<float> taps = gaussian_taps(sigma_px(term), filter_radius_px());
   return filter_columns(filter_rows(in, taps), taps);
 }
@@ -71,11 +71,11 @@ double mass(SensitivityTerm term) {
   return term.a * std::sqrt(std::numbers::pi / term.b) * line * line;
 }
 
-Planes filtered_by_sensitivity(const Planes& in) {
+Channels filtered_by_sensitivity(const Channels& in) {
   constexpr SensitivityTerm luma{1.0, 0.0047}, red_green{1.0, 0.0053}, blue_1{34.1, 0.04},
       blue_2{13.5, 0.025};
-  Planes out = {filtered(in[0], luma), filtered(in[1], red_green), filtered(in[2], blue_1)};
-  const Plane second = filtered(in[2], blue_2);
+  Channels out = {filtered(in[0], luma), filtered(in[1], red_green), filtered(in[2], blue_1)};
+  const Channel second = filtered(in[2], blue_2);
   const auto share = static_cast<float>(mass(blue_1) / (mass(blue_1) + mass(blue_2)));
   for (std::size_t i = 0; i < second.values.size(); ++i)
     out[2].values[i] = share * out[2].values[i] + (1.0f - share) * second.values[i];
@@ -125,21 +125,21 @@ std::vector<float> derivative_taps(int order, double sigma, int radius) {
 }
 
 struct Features {
-  Plane edge, point;
+  Channel edge, point;
 };
 
-void to_magnitude(Plane& x, const Plane& y) {
+void to_magnitude(Channel& x, const Channel& y) {
   for (std::size_t i = 0; i < x.values.size(); ++i)
     x.values[i] = std::sqrt(x.values[i] * x.values[i] + y.values[i] * y.values[i]);
 }
 
-Features features(const Plane& luma) {
+Features features(const Channel& luma) {
   const double sigma = 0.5 * kFeatureWidthDegrees * kFlipPixelsPerDegree;
   const int radius = static_cast<int>(std::ceil(3.0 * sigma));
   const std::vector<float> smooth = gaussian_taps(sigma, radius);
   const std::vector<float> first = derivative_taps(1, sigma, radius),
                            second = derivative_taps(2, sigma, radius);
-  const Plane smooth_rows = filter_rows(luma, smooth);
+  const Channel smooth_rows = filter_rows(luma, smooth);
   Features found{filter_columns(filter_rows(luma, first), smooth),
                  filter_columns(filter_rows(luma, second), smooth)};
   to_magnitude(found.edge, filter_columns(smooth_rows, first));
@@ -148,9 +148,9 @@ Features features(const Plane& luma) {
 }
 
 // Y lies in [0,1] instead of [-16,100]: the filters have no response to the shift, only to the scale.
-Plane feature_error(const Plane& test, const Plane& reference) {
+Channel feature_error(const Channel& test, const Channel& reference) {
   const Features t = features(test), r = features(reference);
-  Plane error(test.width, test.height);
+  Channel error(test.width, test.height);
   for (std::size_t i = 0; i < error.values.size(); ++i) {
     const float edge = std::abs(t.edge.values[i] - r.edge.values[i]);
     const float point = std::abs(t.point.values[i] - r.point.values[i]);
@@ -162,10 +162,10 @@ Plane feature_error(const Plane& test, const Plane& reference) {
 
 }  // namespace
 
-Plane flip_error(const Image& test, const Image& reference) {
-  const Planes test_planes = opponent_planes(test), reference_planes = opponent_planes(reference);
-  Plane error = feature_error(test_planes[0], reference_planes[0]);
-  const Planes t = filtered_by_sensitivity(test_planes), r = filtered_by_sensitivity(reference_planes);
+Channel flip_error(const Image& test, const Image& reference) {
+  const Channels test_channels = opponent_channels(test), reference_channels = opponent_channels(reference);
+  Channel error = feature_error(test_channels[0], reference_channels[0]);
+  const Channels t = filtered_by_sensitivity(test_channels), r = filtered_by_sensitivity(reference_channels);
   for (std::size_t i = 0; i < error.values.size(); ++i) {
     const glm::vec3 p = linear_from_opponent(t[0].values[i], t[1].values[i], t[2].values[i]);
     const glm::vec3 q = linear_from_opponent(r[0].values[i], r[1].values[i], r[2].values[i]);

@@ -1,7 +1,7 @@
 #pragma once
 // FLIP: the difference that a viewer sees when two pictures are flipped.
+#include "pipeline/image/channel.h"
 #include "pipeline/image/image.h"
-#include "pipeline/image/plane.h"
 
 namespace hwsim::pipeline {
 
@@ -10,6 +10,6 @@ inline constexpr double kFlipPixelsPerDegree = 67.0206432766;
 
 /// LDR FLIP (Andersson et al. 2020), the error of each pixel in [0,1]. Linear images of the same size with
 /// values in [0,1].
-Plane flip_error(const Image& test, const Image& reference);
+Channel flip_error(const Image& test, const Image& reference);
 
 }  // namespace hwsim::pipeline

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "pipeline/image/channel.h"
 #include "pipeline/image/flip.h"
-#include "pipeline/image/plane.h"
 
 namespace hwsim::pipeline {
 namespace {
@@ -41,15 +41,15 @@ double mean_squared_error(const Image& test, const Image& reference) {
   return sum / (3.0 * static_cast<double>(test.pixels.size()));
 }
 
-Plane luma_plane(const Image& image) {
-  Plane plane(image.width, image.height);
+Channel luma_channel(const Image& image) {
+  Channel channel(image.width, image.height);
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
-    plane.values[i] = 0.299f * image.pixels[i].x + 0.587f * image.pixels[i].y + 0.114f * image.pixels[i].z;
-  return plane;
+    channel.values[i] = 0.299f * image.pixels[i].x + 0.587f * image.pixels[i].y + 0.114f * image.pixels[i].z;
+  return channel;
 }
 
-Plane product(const Plane& a, const Plane& b) {
-  Plane out(a.width, a.height);
+Channel product(const Channel& a, const Channel& b) {
+  Channel out(a.width, a.height);
   for (std::size_t i = 0; i < out.values.size(); ++i) out.values[i] = a.values[i] * b.values[i];
   return out;
 }
@@ -58,11 +58,11 @@ constexpr int kSsimRadiusPx = 5;
 
 // Wang et al. 2004 average the windows that lie inside the image; images without one take all, borders
 // repeated.
-double structural_similarity(const Plane& a, const Plane& b) {
+double structural_similarity(const Channel& a, const Channel& b) {
   const std::vector<float> taps = gaussian_taps(1.5, kSsimRadiusPx);
-  const auto blur = [&](const Plane& in) { return filter_columns(filter_rows(in, taps), taps); };
-  const Plane mean_a = blur(a), mean_b = blur(b), aa = blur(product(a, a)), bb = blur(product(b, b)),
-              ab = blur(product(a, b));
+  const auto blur = [&](const Channel& in) { return filter_columns(filter_rows(in, taps), taps); };
+  const Channel mean_a = blur(a), mean_b = blur(b), aa = blur(product(a, a)), bb = blur(product(b, b)),
+                ab = blur(product(a, b));
   const bool has_inside = std::min(a.width, a.height) > 2 * kSsimRadiusPx;
   const int margin = has_inside ? kSsimRadiusPx : 0;
   constexpr double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
@@ -84,7 +84,7 @@ double quantile(std::vector<float>& values, double share) {
   return *nth;
 }
 
-void add_flip(ImageError& error, Plane flip) {
+void add_flip(ImageError& error, Channel flip) {
   double sum = 0.0;
   for (const float value : flip.values) sum += value;
   error.flip_mean = sum / static_cast<double>(flip.values.size());
@@ -108,8 +108,8 @@ ImageError compare(const Image& test, const Image& reference, Image* flip_map) {
   const double squared = mean_squared_error(encoded_test, encoded_reference);
   error.rmse = std::sqrt(squared);
   error.psnr_db = squared > 0.0 ? std::min(kInfinitePsnrDb, -10.0 * std::log10(squared)) : kInfinitePsnrDb;
-  error.ssim = structural_similarity(luma_plane(encoded_test), luma_plane(encoded_reference));
-  Plane flip = flip_error(shown_test, shown_reference);
+  error.ssim = structural_similarity(luma_channel(encoded_test), luma_channel(encoded_reference));
+  Channel flip = flip_error(shown_test, shown_reference);
   if (flip_map) {
     *flip_map = Image(test.width, test.height, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
     for (std::size_t i = 0; i < flip.values.size(); ++i) flip_map->pixels[i].x = flip.values[i];

@@ -29,7 +29,7 @@ HWY_INLINE I line_hash(I line) {
 /// Lanes whose line belongs to the sample: in most registers none.
 template <class I>
 HWY_INLINE std::uint32_t sampled_lines(const AccessTracker& tracker, I line, std::uint32_t lanes) {
-  const int shift = tracker.kinds[at(ReuseStream::texture)].shift;
+  const int shift = tracker.kinds[index_of(ReuseStream::texture)].shift;
   const I high(static_cast<std::int32_t>(~(0xffffffffu >> shift)));
   return mask_bits((line_hash(line) & high) == I(0)) & lanes;
 }

@@ -103,7 +103,7 @@ TEST(Predictor, LightReachScalesWhatTheLightsAdd) {
 
 TEST(Predictor, OwnParameterTakesThePlaceOfTheOneForAll) {
   Synthetic s = make_synthetic(1, 1);
-  for (Parameter& p : s.experiment.parameters)
+  for (FittedParameter& p : s.experiment.parameters)
     if (p.scope == Scope::all) p.own_of = {"a"};
   s.experiment.parameters.push_back(parameter(Scope::gpu, "a", "alu_efficiency_ratio", 0.8, 0.1, 1.0));
   s.truth.push_back(std::log(0.5));
@@ -112,7 +112,7 @@ TEST(Predictor, OwnParameterTakesThePlaceOfTheOneForAll) {
   bool own_moves = false, shared_moves = false;
   for (std::size_t i = 0; i < s.experiment.cells.size(); ++i)
     for (std::size_t k = 0; k < s.truth.size(); ++k) {
-      const Parameter& p = s.experiment.parameters[k];
+      const FittedParameter& p = s.experiment.parameters[k];
       if (p.name != "alu_efficiency_ratio" || s.experiment.cells[i].run.gpu != "a") continue;
       (p.scope == Scope::all ? shared_moves : own_moves) |= predictor[i].gradient[k] != 0.0;
     }

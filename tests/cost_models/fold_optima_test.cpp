@@ -71,7 +71,7 @@ TEST(FoldOptima, ReadBackTheSameNumbersAndGiveNewParametersTheirStart) {
   const Synthetic s = make_synthetic(1, 1);
   const std::vector<FoldOptimum> optima = {{Split::in_sample, "", s.truth},
                                            {Split::leave_scene_out, "hall:seed=3,detail=5", s.truth}};
-  std::vector<Parameter> parameters = s.experiment.parameters;
+  std::vector<FittedParameter> parameters = s.experiment.parameters;
   const std::string text = to_csv(optima, parameters);
   parameters.push_back(parameter(Scope::gpu, "a", "new_key", 3.0, 1.0, 9.0));
   const std::vector<FoldOptimum> back = load_fold_optima(written(text), parameters);
@@ -83,7 +83,7 @@ TEST(FoldOptima, ReadBackTheSameNumbersAndGiveNewParametersTheirStart) {
 }
 
 TEST(FoldOptima, ThatAreDamagedAreRefusedWithTheirLine) {
-  const std::vector<Parameter> parameters = {parameter(Scope::gpu, "a", "key", 2.0, 1.0, 4.0)};
+  const std::vector<FittedParameter> parameters = {parameter(Scope::gpu, "a", "key", 2.0, 1.0, 4.0)};
   for (const char* row : {"no_split,,2", "in_sample,,-2", "in_sample,,nan", "in_sample,,", "in_sample,,2x"}) {
     SCOPED_TRACE(row);
     try {

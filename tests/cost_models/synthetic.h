@@ -59,8 +59,8 @@ inline std::shared_ptr<const WorkTrace> random_trace(std::uint64_t seed) {
   return trace;
 }
 
-inline Parameter parameter(Scope scope, const std::string& member, const std::string& name, double start,
-                           double low, double high) {
+inline FittedParameter parameter(Scope scope, const std::string& member, const std::string& name,
+                                 double start, double low, double high) {
   return {scope, member, name, start, low, high, std::log(3.0), "ratio", "", {}};
 }
 
@@ -116,7 +116,7 @@ inline Synthetic make_synthetic(int scenes = 3, int techniques = 4) {
       }
     }
   Numbers numbers(7);
-  for (const Parameter& p : e.parameters)
+  for (const FittedParameter& p : e.parameters)
     s.truth.push_back(std::log(p.low) + (0.3 + 0.5 * numbers.next()) * std::log(p.high / p.low));
   Predictor predictor(e, 1);
   predictor.evaluate(s.truth, false);
@@ -131,7 +131,7 @@ inline void add_noise(Experiment& experiment, double percent) {
 }
 
 inline void forget_priors(Experiment& experiment) {
-  for (Parameter& p : experiment.parameters) p.prior_log_sd = 0.0;
+  for (FittedParameter& p : experiment.parameters) p.prior_log_sd = 0.0;
 }
 
 inline std::vector<double> predictions(const Experiment& experiment, const Fit& fit) {

@@ -58,7 +58,7 @@ PassWork depth_pass(int samples) {
   curve.write_bytes.fill(curve.requested_write_bytes);
   curve.read_stays.fill(kChunks * kTiles);
   curve.write_stays.fill(kChunks * kTiles);
-  pass.reuse.apart[at(ReuseStream::depth)] = pass.reuse.shared[at(ReuseStream::depth)] = curve;
+  pass.reuse.apart[index_of(ReuseStream::depth)] = pass.reuse.shared[index_of(ReuseStream::depth)] = curve;
   return pass;
 }
 
@@ -93,7 +93,7 @@ TEST(DepthTraffic, AStayNeverMovesMoreThanItAskedFor) {
   PassWork pass = depth_pass(1);
   for (PassCounters& c : pass.chunks) c.mem.depth_read_bytes = kTiles * 8;  // two samples a tile
   for (auto* profile : {&pass.reuse.apart, &pass.reuse.shared}) {
-    MissCurve& curve = (*profile)[at(ReuseStream::depth)];
+    MissCurve& curve = (*profile)[index_of(ReuseStream::depth)];
     curve.requested_read_bytes = kTiles * kChunks * 8;
     curve.read_bytes.fill(curve.requested_read_bytes);
   }
@@ -105,7 +105,7 @@ TEST(DepthTraffic, TilesStillClearedAreTakenOutOfTheMixWhereTheirFirstReadIsFree
   for (PassCounters& c : pass.chunks) c.zrop.read_clear_tiles = kTiles;
   EXPECT_DOUBLE_EQ(time_one(pass, sample_gpu()).dram_bytes.read[kDepth], 16.0 * kTiles * kChunks);
   for (auto* profile : {&pass.reuse.apart, &pass.reuse.shared})
-    (*profile)[at(ReuseStream::depth)].first_read_bytes.fill(kTiles * 256 * kChunks / 2);
+    (*profile)[index_of(ReuseStream::depth)].first_read_bytes.fill(kTiles * 256 * kChunks / 2);
   pass.depth_cleared_before = true;  // half of the bytes are first reads, the other half are planes
   EXPECT_DOUBLE_EQ(time_one(pass, sample_gpu()).dram_bytes.read[kDepth], 16.0 * kTiles * kChunks);
 }
@@ -165,7 +165,7 @@ TEST(ColorTraffic, AStayMovesAtLeastAGranule) {
   GpuConfig gpu = sample_gpu();
   gpu.color_delta_ratio = 0.25;
   for (auto* profile : {&pass.reuse.apart, &pass.reuse.shared}) {
-    MissCurve& curve = (*profile)[at(ReuseStream::color)];
+    MissCurve& curve = (*profile)[index_of(ReuseStream::color)];
     curve.requested_write_bytes = total(pass).mem.color_write_bytes;
     curve.write_bytes.fill(curve.requested_write_bytes);
     curve.write_stays.fill(curve.requested_write_bytes / 64);

@@ -169,7 +169,8 @@ TEST(Detailed, CachesKeepWhatTheCurvesSay) {
   curve.requested_read_bytes = total(pass).mem.storage_read_bytes;
   for (std::size_t k = 0; k < kCacheSizes; ++k)
     curve.read_bytes[k] = k < 6 ? curve.requested_read_bytes : curve.requested_read_bytes / 2;
-  pass.reuse.apart[at(ReuseStream::storage)] = pass.reuse.shared[at(ReuseStream::storage)] = curve;
+  pass.reuse.apart[index_of(ReuseStream::storage)] = pass.reuse.shared[index_of(ReuseStream::storage)] =
+      curve;
   GpuConfig gpu = sample_gpu();
   const auto moved = [&](double kib) {
     gpu.l2_size_kib = kib;

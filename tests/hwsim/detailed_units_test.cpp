@@ -115,17 +115,17 @@ TEST(DetailedUnits, OnePacketAloneTakesTheSumOfItsServices) {
   ChunkPackets& chunk = all.add(1, 1.0);
   for (const Unit unit : kFrontUnits) {
     Bench alone;
-    alone.add(1).service_ns[at(unit)] = service;
+    alone.add(1).service_ns[index_of(unit)] = service;
     EXPECT_DOUBLE_EQ(alone.ns(), service) << unit_name(unit);
-    chunk.service_ns[at(unit)] = service;
+    chunk.service_ns[index_of(unit)] = service;
     sum += service++;
   }
   for (const Unit unit : {Unit::crop, Unit::resolve}) {
     Bench alone;
-    alone.add(1).service_ns[at(unit)] = 3.0;
+    alone.add(1).service_ns[index_of(unit)] = 3.0;
     EXPECT_DOUBLE_EQ(alone.ns(), 3.0) << unit_name(unit);
   }
-  chunk.service_ns[at(Unit::crop)] = 40.0;
+  chunk.service_ns[index_of(Unit::crop)] = 40.0;
   const auto with_pipe = [&all, sum](double SubgroupWork::*pipe) {
     Bench bench = all;
     bench.plan.chunks[0].work.*pipe = 200.0;
@@ -145,8 +145,8 @@ TEST(DetailedUnits, WaitWhenTheQueueBehindThemIsFullAndNotOnePacketEarlier) {
   for (std::size_t u = 0; u + 1 < kFrontUnits.size(); ++u)
     for (const std::uint64_t packets : {7u, 8u}) {
       Bench bench;
-      bench.add(packets).service_ns[at(kFrontUnits[u + 1])] = 3.0;
-      bench.add(packets).service_ns[at(kFrontUnits[u])] = 5.0;
+      bench.add(packets).service_ns[index_of(kFrontUnits[u + 1])] = 3.0;
+      bench.add(packets).service_ns[index_of(kFrontUnits[u])] = 5.0;
       const double waits = packets < 8 ? 0.0 : 3.0;
       EXPECT_DOUBLE_EQ(bench.ns(), waits + 5.0 * static_cast<double>(packets))
           << unit_name(kFrontUnits[u]) << " " << packets;
@@ -156,7 +156,7 @@ TEST(DetailedUnits, WaitWhenTheQueueBehindThemIsFullAndNotOnePacketEarlier) {
 TEST(DetailedUnits, SubgroupsKeepTheirPlacesWhenTheQueueToTheRopsIsFullAndNotOneEarlier) {
   for (const std::uint64_t packets : {8u, 9u}) {
     Bench bench;
-    bench.add(packets, static_cast<double>(packets)).service_ns[at(Unit::crop)] = 3.0;
+    bench.add(packets, static_cast<double>(packets)).service_ns[index_of(Unit::crop)] = 3.0;
     bench.add(packets, static_cast<double>(packets)).work.alu_ns = 5.0;
     const double waits = packets < 9 ? 0.0 : 3.0;
     EXPECT_DOUBLE_EQ(bench.ns(), waits + 5.0 * static_cast<double>(packets)) << packets;
@@ -165,9 +165,9 @@ TEST(DetailedUnits, SubgroupsKeepTheirPlacesWhenTheQueueToTheRopsIsFullAndNotOne
 
 TEST(DetailedUnits, PacketsWithoutSubgroupsPassThoseThatWaitForTheRops) {
   Bench bench;
-  bench.add(1, 1.0).service_ns[at(Unit::crop)] = 1000.0;
+  bench.add(1, 1.0).service_ns[index_of(Unit::crop)] = 1000.0;
   ChunkPackets& mixed = bench.add(101, 1.0);
-  mixed.service_ns[at(Unit::raster)] = 5.0;
+  mixed.service_ns[index_of(Unit::raster)] = 5.0;
   EXPECT_DOUBLE_EQ(bench.ns(), 1000.0);
 }
 
@@ -206,8 +206,8 @@ TEST(DetailedUnits, FixedFunctionUnitsWaitWhenTheirLinesAreOnTheirWayAndNotOneEa
     bench.plan.reaches_l2.read.fill(1.0);
     bench.plan.run_lines.read.fill(1.0);
     ChunkPackets& chunk = bench.add(1);
-    chunk.l2.read[at(Stream::vertex)] = 64.0 * (std::floor(rates.unit_lines) + more);
-    chunk.service_ns[at(Unit::ia)] = 1.0;
+    chunk.l2.read[index_of(Stream::vertex)] = 64.0 * (std::floor(rates.unit_lines) + more);
+    chunk.service_ns[index_of(Unit::ia)] = 1.0;
     Machine machine(pass, bench.plan, gpu, rates, 1'000'000, 1);
     EXPECT_NEAR(machine.enter_until(1).ns, 1.0 + more * (700 - 100), 0.1) << more;
   }

@@ -109,7 +109,7 @@ std::vector<double> room_of_cores(double fills_of_first, double fills_of_second)
   costs[1].core_fills = fills_of_second;
   GpuRates<double> rates = derive_rates<double>(test::sample_gpu());
   rates.queue_packets = 4.0;
-  const auto flow = flow_table(costs, {at(Unit::shader), at(Unit::l2)}, rates);
+  const auto flow = flow_table(costs, {index_of(Unit::shader), index_of(Unit::l2)}, rates);
   return {flow.room_packets[0], flow.room_packets[2]};
 }
 

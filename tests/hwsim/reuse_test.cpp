@@ -54,19 +54,19 @@ std::uint64_t lru_bytes(const std::vector<BlockAccess>& accesses, std::size_t ca
 
 TEST(Reuse, CurveOfAllBlocksEqualsTheCacheOfEverySize) {
   const std::vector<BlockAccess> reads = wandering_reads(3000, 20'000, 1);
-  const MissCurve curve = analyze(reads).apart[at(kTexture)];
+  const MissCurve curve = analyze(reads).apart[index_of(kTexture)];
   for (std::size_t k = 0; k < 8; ++k)
     EXPECT_EQ(curve.read_bytes[k], lru_bytes(reads, std::size_t{1024} << k)) << k;
 }
 
 TEST(Reuse, TilesComeWholeOrInPartAndLeaveWithWhatWasWritten) {
   BlockKinds kinds;
-  kinds[at(ReuseStream::color)] = {512, false, 0};
+  kinds[index_of(ReuseStream::color)] = {512, false, 0};
   // Tiles 1 2 1 3 1; a cache of 1 KiB holds two.
   const auto c = ReuseStream::color;
   const std::vector<BlockAccess> accesses = {{0, 1, c, 0, 100}, {1, 2, c, 0, 600}, {2, 1, c, 16, 100},
                                              {3, 3, c, 0, 10},  {4, 1, c, 0, 400}, {5, 2, c, 0, 8}};
-  const MissCurve curve = analyze(accesses, kinds).apart[at(c)];
+  const MissCurve curve = analyze(accesses, kinds).apart[index_of(c)];
   EXPECT_EQ(curve.requested_write_bytes, 1218u);
   EXPECT_EQ(curve.write_bytes[0], 512u + 512u + 10u + 8u);  // tile 1 capped; tile 2 capped, then again 8
   EXPECT_EQ(curve.write_bytes[1], 512u + 512u + 10u);       // 2 KiB hold all: tile 2 stays capped
@@ -84,9 +84,9 @@ TEST(Reuse, StreamsThatShareACachePushEachOtherOut) {
     accesses.push_back({i, static_cast<std::uint32_t>(i % 12), ReuseStream::depth, 64, 0});
   }
   const ReuseProfile profile = analyze(accesses);
-  EXPECT_EQ(profile.apart[at(kTexture)].read_bytes[0], 12u * 64);  // 768 bytes fit
-  EXPECT_EQ(profile.shared[at(kTexture)].read_bytes[0], 1000u * 64);
-  EXPECT_EQ(profile.shared[at(kTexture)].read_bytes[1], 12u * 64);
+  EXPECT_EQ(profile.apart[index_of(kTexture)].read_bytes[0], 12u * 64);  // 768 bytes fit
+  EXPECT_EQ(profile.shared[index_of(kTexture)].read_bytes[0], 1000u * 64);
+  EXPECT_EQ(profile.shared[index_of(kTexture)].read_bytes[1], 12u * 64);
 }
 
 TEST(Reuse, OrderIsThatOfTheAccessesWhoeverNotedThem) {
@@ -104,9 +104,9 @@ TEST(Reuse, ASampleOfOneBlockInThirtyTwoIsWithinAFewPercent) {
   for (unsigned seed = 1; seed <= 2; ++seed) {
     const std::vector<BlockAccess> reads = wandering_reads(kLines, 150'000, seed);
     BlockKinds kinds;
-    const MissCurve exact = analyze(reads, kinds).apart[at(kTexture)];
-    kinds[at(kTexture)].shift = 5;
-    const MissCurve sampled = analyze(sample_of(reads, 5), kinds).apart[at(kTexture)];
+    const MissCurve exact = analyze(reads, kinds).apart[index_of(kTexture)];
+    kinds[index_of(kTexture)].shift = 5;
+    const MissCurve sampled = analyze(sample_of(reads, 5), kinds).apart[index_of(kTexture)];
     for (std::size_t k = 3; k < 13; ++k) {  // 8 KiB to 4 MiB
       const auto all = static_cast<double>(reads.size());
       const double error =
@@ -141,8 +141,8 @@ TEST(Reuse, SetsOfEightWaysMissLittleMoreThanFullAssociativity) {
 TEST(Reuse, ASampledCurveIsNearExactCachesOfEverySizeAndAssociativity) {
   const std::vector<BlockAccess> reads = wandering_reads(60'000, 150'000, 4);
   BlockKinds kinds;
-  kinds[at(kTexture)].shift = 5;
-  const MissCurve curve = analyze(sample_of(reads, 5), kinds).apart[at(kTexture)];
+  kinds[index_of(kTexture)].shift = 5;
+  const MissCurve curve = analyze(sample_of(reads, 5), kinds).apart[index_of(kTexture)];
   const auto all = static_cast<double>(reads.size());
   double worst = 0.0, sum = 0.0;
   int cells = 0;

@@ -93,15 +93,17 @@ inline MissCurve even_curve(std::uint64_t read, std::uint64_t write, double comp
 inline void set_reuse(PassWork& pass, double compulsory_ratio) {
   const MemCounters mem = total(pass).mem;
   auto& of = pass.reuse.shared;
-  of[at(ReuseStream::color)] = even_curve(mem.color_read_bytes, mem.color_write_bytes, compulsory_ratio);
-  of[at(ReuseStream::depth)] = even_curve(mem.depth_read_bytes, mem.depth_write_bytes, compulsory_ratio);
-  of[at(ReuseStream::texture)] = even_curve(mem.texture_read_bytes, 0, compulsory_ratio);
-  of[at(ReuseStream::storage)] =
+  of[index_of(ReuseStream::color)] =
+      even_curve(mem.color_read_bytes, mem.color_write_bytes, compulsory_ratio);
+  of[index_of(ReuseStream::depth)] =
+      even_curve(mem.depth_read_bytes, mem.depth_write_bytes, compulsory_ratio);
+  of[index_of(ReuseStream::texture)] = even_curve(mem.texture_read_bytes, 0, compulsory_ratio);
+  of[index_of(ReuseStream::storage)] =
       even_curve(mem.storage_read_bytes, mem.storage_write_bytes, compulsory_ratio);
-  of[at(ReuseStream::geometry)] =
+  of[index_of(ReuseStream::geometry)] =
       even_curve(mem.vertex_read_bytes + mem.index_read_bytes, 0, compulsory_ratio);
   pass.reuse.apart = of;
-  pass.reuse.texture_l1 = of[at(ReuseStream::texture)];
+  pass.reuse.texture_l1 = of[index_of(ReuseStream::texture)];
 }
 
 /// A pass that gives every unit something to do.

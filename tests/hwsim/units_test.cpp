@@ -41,7 +41,7 @@ TEST(Units, AreDescribedInTheHardwareModelByTheWordsOfTheirHeaders) {
 TEST(Units, AllServeAChunkThatAsksThemAll) {
   const PassWork pass = busy_pass(1);
   ChunkTraffic<double> traffic;
-  traffic.l2_bytes = traffic.dram.read[at(Stream::color)] = 1000.0;
+  traffic.l2_bytes = traffic.dram.read[index_of(Stream::color)] = 1000.0;
   const auto ns =
       service_times_ns(UnitWork<double>{pass.chunks[0], pass, traffic}, derive_rates<double>(sample_gpu()));
   for (std::size_t u = 0; u < ns.size(); ++u) EXPECT_GT(ns[u], 0.0) << kUnits[u].id;

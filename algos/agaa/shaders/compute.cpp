@@ -31,7 +31,7 @@ enum DefineBlock : int {
 template <class F>
 struct SurfaceSample {
   Vec3<F> position;  ///< view space: relative to the camera, so that large scenes keep their precision
-  Vec3<F> normal;    ///< in the pixel's frame
+  Vec3<F> normal;    ///< in the pixel's basis
 };
 
 template <class M, class F>
@@ -283,7 +283,7 @@ class Clusters {
       const Vec3<F> d = (sample_[n].position - mean_.position) * select(visible_[n], F(1.0f), F(0.0f));
       across = max(across, dot(d, d));
     }
-    // The normals' frame is the pixel's, positions are the camera's: the plane's own normal comes from three
+    // The normals' basis is the pixel's, positions are the camera's: the plane's own normal comes from three
     // samples.
     const Vec3<F> a = sample_[1].position - sample_[0].position,
                   b = sample_[2].position - sample_[0].position;

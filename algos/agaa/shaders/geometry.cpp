@@ -25,8 +25,8 @@ struct VisibilityShader {
     // Positions at any points of the plane will do: the cross product of their differences is normal to it.
     const auto p = s.attr3(V::kPosition);
     const Vec3<F> across = {ddx(p.x), ddx(p.y), ddx(p.z)}, down = {ddy(p.x), ddy(p.y), ddy(p.z)};
-    const auto frame = pixel_frame<F>(u.rays, s.pixel_x(), s.pixel_y());
-    const auto code = encode_pixel_normal(frame, normalize(cross(across, down)));
+    const auto basis = pixel_basis<F>(u.rays, s.pixel_x(), s.pixel_y());
+    const auto code = encode_pixel_normal(basis, normalize(cross(across, down)));
     F alpha(1.0f);
     if constexpr (kAlpha) alpha = lanes::sample_alpha(s, V::kUv0);
     s.output(0, {code.x, code.y, F(0.0f), alpha});
@@ -47,7 +47,7 @@ F gloss_of(F exponent, const AggregateUniforms& u) {
 }
 
 template <class F, class I>
-void set_shape(const AggregateUniforms& u, const PixelFrame<F>& frame, const lanes::Surface<F>& surface,
+void set_shape(const AggregateUniforms& u, const PixelBasis<F>& basis, const lanes::Surface<F>& surface,
                const Vec3<F>& n, F weight, AggregateRecord<F, I>& r) {
   switch (u.ndf) {
     case Ndf::toksvig: {
@@ -58,8 +58,8 @@ void set_shape(const AggregateUniforms& u, const PixelFrame<F>& frame, const lan
       break;
     }
     case Ndf::lean: {
-      const F inv_z = F(1.0f) / max(dot(n, frame.z), F(1e-3f));
-      F bx = dot(n, frame.x) * inv_z, by = dot(n, frame.y) * inv_z;
+      const F inv_z = F(1.0f) / max(dot(n, basis.z), F(1e-3f));
+      F bx = dot(n, basis.x) * inv_z, by = dot(n, basis.y) * inv_z;
       const F scale = min(F(1.0f), F(4.0f) * rsqrt(max(bx * bx + by * by, F(1e-12f))));
       bx = bx * scale;
       by = by * scale;
@@ -135,9 +135,9 @@ struct GenerateShader {
     AggregateRecord<F, I> r{};
     r.count = to_float(bit_count(mask));
     const F weight = r.count * F(1.0f / static_cast<float>(a.samples));
-    PixelFrame<F> frame{};
-    if (a.ndf == Ndf::lean) frame = pixel_frame<F>(a.rays, s.pixel_x(), s.pixel_y());
-    set_shape(a, frame, surface, material.normal, weight, r);
+    PixelBasis<F> basis{};
+    if (a.ndf == Ndf::lean) basis = pixel_basis<F>(a.rays, s.pixel_x(), s.pixel_y());
+    set_shape(a, basis, surface, material.normal, weight, r);
     encode_specular(surface.specular, r.luma, r.cb, r.cr);
     r.luma = r.luma * weight;
     r.cb = r.cb * weight;

@@ -41,7 +41,7 @@ class AggregateLight {
 
   AggregateLight(S& s, const ShadeUniforms& u, int aggregate, M mask)
       : s_(s), u_(u), aggregate_(aggregate), mask_(mask) {
-    if (u.aggregate.ndf == Ndf::lean) frame_ = pixel_frame<F>(u.aggregate.rays, s.pixel_x(), s.pixel_y());
+    if (u.aggregate.ndf == Ndf::lean) basis_ = pixel_basis<F>(u.aggregate.rays, s.pixel_x(), s.pixel_y());
   }
 
   /// `r`: normalized means.
@@ -161,7 +161,7 @@ class AggregateLight {
       }
       case Ndf::lean:
         lean_ = make_lean(r.shape);
-        surface_.normal = normalize(frame_.x * r.shape[0] + frame_.y * r.shape[1] + frame_.z);
+        surface_.normal = normalize(basis_.x * r.shape[0] + basis_.y * r.shape[1] + basis_.z);
         set_gloss(F(2.0f) / max(lean_.xx + lean_.yy, F(1e-5f)));
         diffuse_length_ = surface_.exponent / (surface_.exponent + F(1.0f));
         break;
@@ -280,7 +280,7 @@ class AggregateLight {
       case Ndf::toksvig:
         return matte + (ggx ? ggx_specular(surface, l) : blinn_phong_specular(surface, own_scale_, l));
       case Ndf::lean:
-        return matte + lean_specular(surface, own_scale_, lean_, frame_, l, ggx);
+        return matte + lean_specular(surface, own_scale_, lean_, basis_, l, ggx);
       case Ndf::sggx:
         return matte + sggx_specular(surface, own_scale_, sggx_, l, ggx);
     }
@@ -342,7 +342,7 @@ class AggregateLight {
   const ShadeUniforms& u_;
   int aggregate_;
   M mask_;
-  PixelFrame<F> frame_{};
+  PixelBasis<F> basis_{};
   lanes::Surface<F> surface_{};
   Vec3<F> place_{}, spread_{};  ///< relative to the eye; standard deviation along the main axis
   SymmetricMatrix<F> covariance_{};

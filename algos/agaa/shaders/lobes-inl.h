@@ -172,7 +172,7 @@ Vec3<F> ggx_specular(const lanes::Surface<F>& s, const Vec3<F>& l) {
   return schlick(s, dot(s.to_eye, h)) * (ndf * smith_visibility(s, dot(s.normal, l)));
 }
 
-/// Mean slope and its covariance, in the pixel's frame.
+/// Mean slope and its covariance, in the pixel's basis.
 template <class F>
 struct Lean {
   F bx, by;
@@ -198,11 +198,11 @@ Lean<F> make_lean(const F (&shape)[6]) {
 
 template <class F>
 Vec3<F> lean_specular(const lanes::Surface<F>& s, F own_scale, const Lean<F>& lean,
-                      const PixelFrame<F>& frame, const Vec3<F>& l, bool ggx) {
+                      const PixelBasis<F>& basis, const Vec3<F>& l, bool ggx) {
   const Vec3<F> h = normalize(l + s.to_eye);
-  const F hz = dot(h, frame.z);
+  const F hz = dot(h, basis.z);
   const F inv_z = F(1.0f) / max(hz, F(1e-3f));
-  const F x = dot(h, frame.x) * inv_z - lean.bx, y = dot(h, frame.y) * inv_z - lean.by;
+  const F x = dot(h, basis.x) * inv_z - lean.bx, y = dot(h, basis.y) * inv_z - lean.by;
   const F e = (x * x * lean.yy - F(2.0f) * x * y * lean.xy + y * y * lean.xx) / lean.det;
   const F density = exp2(e * F(-0.7213475204f)) * F(0.5f / kPi) * rsqrt(lean.det);
   const auto lit = (dot(s.normal, l) > F(0.0f)) & (hz > F(0.0f));

@@ -1,4 +1,4 @@
-// What passes 1 to 4 of AGAA share: the pixel's frame, normal codes, and records of aggregates.
+// What passes 1 to 4 of AGAA share: the pixel's basis, normal codes, and records of aggregates.
 // Per-target include guard, see simd/lanes-inl.h.
 #include <hwy/highway.h>
 #include <type_traits>
@@ -32,7 +32,7 @@ template <class S>
 inline constexpr bool kCounting = std::is_same_v<typename S::F, pipeline::CountF>;
 
 template <class F>
-struct PixelFrame {
+struct PixelBasis {
   Vec3<F> x, y, z;
 };
 
@@ -43,22 +43,22 @@ Vec3<F> constant(const glm::vec3& v) {
 
 /// Z to the eye, X level, Y completes them.
 template <class F, class I>
-PixelFrame<F> pixel_frame(const PixelRays& rays, I px, I py) {
+PixelBasis<F> pixel_basis(const PixelRays& rays, I px, I py) {
   const Vec3<F> ray = constant<F>(rays.first) + constant<F>(rays.per_x) * to_float(px) +
                       constant<F>(rays.per_y) * to_float(py);
-  PixelFrame<F> frame;
-  frame.z = normalize(-ray);
-  const auto steep = abs(frame.z.y) > F(0.999f);
+  PixelBasis<F> basis;
+  basis.z = normalize(-ray);
+  const auto steep = abs(basis.z.y) > F(0.999f);
   const Vec3<F> up = {F(0.0f), select(steep, F(0.0f), F(1.0f)), select(steep, F(1.0f), F(0.0f))};
-  frame.x = normalize(cross(up, frame.z));
-  frame.y = cross(frame.z, frame.x);
-  return frame;
+  basis.x = normalize(cross(up, basis.z));
+  basis.y = cross(basis.z, basis.x);
+  return basis;
 }
 
 /// theta / (pi/2) and phi as the two channels of a rg8_unorm code; the normal is turned toward the eye.
 template <class F>
-Vec2<F> encode_pixel_normal(const PixelFrame<F>& frame, const Vec3<F>& n) {
-  const F x = dot(n, frame.x), y = dot(n, frame.y), z = dot(n, frame.z);
+Vec2<F> encode_pixel_normal(const PixelBasis<F>& basis, const Vec3<F>& n) {
+  const F x = dot(n, basis.x), y = dot(n, basis.y), z = dot(n, basis.z);
   const F side = select(z < F(0.0f), F(-1.0f), F(1.0f));
   const F theta = arccosine(min(max(z * side, F(0.0f)), F(1.0f))) * F(0.6366197724f);
   const F step = floor(angle_turns(y * side, x * side) * F(256.0f) + F(0.5f));
@@ -66,7 +66,7 @@ Vec2<F> encode_pixel_normal(const PixelFrame<F>& frame, const Vec3<F>& n) {
   return {theta, wrapped * F(1.0f / 255.0f)};
 }
 
-/// In the pixel's frame.
+/// In the pixel's basis.
 template <class F>
 Vec3<F> decode_pixel_normal(F theta_code, F phi_code) {
   const F theta = theta_code * F(0.25f);        // turns

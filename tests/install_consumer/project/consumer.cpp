@@ -5,12 +5,10 @@
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
-  hwsim::lab::Request request;
-  request.view.scene = argv[1];
-  request.view.resolution = {64, 48};
-  request.techniques = {"msaa4x", "fxaa"};
+  const hwsim::lab::Request request{.view = {.scene = argv[1], .resolution = {64, 48}},
+                                    .techniques = {"msaa4x", "fxaa"}};
   const hwsim::lab::Ranking ranking = hwsim::lab::Lab().rank(request, "aa_ms<=1");
-  for (const hwsim::lab::RankedTechnique& t : ranking.techniques)
+  for (const auto& t : ranking.techniques)
     std::printf("%s: %.3f ms, FLIP %.4f, %s\n", t.technique.c_str(), t.frame_ms, t.flip_mean,
                 t.verdict.c_str());
   return ranking.techniques.size() == 3 ? 0 : 1;

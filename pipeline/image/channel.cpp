@@ -1,4 +1,4 @@
-#include "pipeline/image/plane.h"
+#include "pipeline/image/channel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@ void accumulate(float* out, const float* in, float tap, int count) {
 
 }  // namespace
 
-Plane filter_rows(const Plane& in, std::span<const float> taps) {
-  Plane out(in.width, in.height);
+Channel filter_rows(const Channel& in, std::span<const float> taps) {
+  Channel out(in.width, in.height);
   const int radius = static_cast<int>(taps.size()) / 2;
   std::vector<float> padded(static_cast<std::size_t>(in.width + 2 * radius));
   for (int y = 0; y < in.height; ++y) {
@@ -28,8 +28,8 @@ Plane filter_rows(const Plane& in, std::span<const float> taps) {
   return out;
 }
 
-Plane filter_columns(const Plane& in, std::span<const float> taps) {
-  Plane out(in.width, in.height);
+Channel filter_columns(const Channel& in, std::span<const float> taps) {
+  Channel out(in.width, in.height);
   const int radius = static_cast<int>(taps.size()) / 2;
   for (int y = 0; y < in.height; ++y)
     for (int k = 0; k < static_cast<int>(taps.size()); ++k) {

@@ -6,12 +6,12 @@
 
 namespace hwsim::pipeline {
 
-struct Plane {
+struct Channel {
   int width = 0;
   int height = 0;
   std::vector<float> values;
 
-  Plane(int w, int h)
+  Channel(int w, int h)
       : width(w), height(h), values(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
   float* row(int y) { return values.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width); }
   const float* row(int y) const {
@@ -20,8 +20,8 @@ struct Plane {
 };
 
 /// Correlation with an odd number of taps along rows or columns; the border's values are repeated outside.
-Plane filter_rows(const Plane& in, std::span<const float> taps);
-Plane filter_columns(const Plane& in, std::span<const float> taps);
+Channel filter_rows(const Channel& in, std::span<const float> taps);
+Channel filter_columns(const Channel& in, std::span<const float> taps);
 
 /// 2 radius + 1 taps exp(-x^2 / (2 sigma_px^2)) that sum to 1.
 std::vector<float> gaussian_taps(double sigma_px, int radius_px);
