@@ -29,7 +29,7 @@ class Validator {
   }
 
  private:
-  void record_failure(std::string code, std::string message, std::string help = "") {
+  void tell(std::string code, std::string message, std::string help = "") {
     errors_.push_back({Severity::error, std::move(code), std::move(message), {}, {}, {}, std::move(help)});
   }
 
@@ -41,14 +41,13 @@ class Validator {
   void check_image(const ImageDesc& image) {
     if (image.width < 1 || image.height < 1 || image.width > functional_.max_image_px ||
         image.height > functional_.max_image_px)
-      record_failure("G001",
-                     "image " + text(image) + " must be 1 to " + std::to_string(functional_.max_image_px) +
-                         " pixels wide and high",
-                     "choose a smaller resolution or supersampling rate");
-    if (image.format == Format::none) record_failure("G003", "image `" + image.name + "` has no format");
+      tell("G001",
+           "image " + text(image) + " must be 1 to " + std::to_string(functional_.max_image_px) +
+               " pixels wide and high",
+           "choose a smaller resolution or supersampling rate");
+    if (image.format == Format::none) tell("G003", "image `" + image.name + "` has no format");
     if (image.layers < 1 || image.layers > kMaxLayers)
-      record_failure("G001",
-                     "image " + text(image) + " must have 1 to " + std::to_string(kMaxLayers) + " layers");
+      tell("G001", "image " + text(image) + " must have 1 to " + std::to_string(kMaxLayers) + " layers");
     const int s = image.samples;
     const bool said =
         std::find(refused_samples_.begin(), refused_samples_.end(), s) != refused_samples_.end();
@@ -56,12 +55,12 @@ class Validator {
     if (refused) refused_samples_.push_back(s);
     if (said) return;  // once for all images of a frame
     if (s < 1 || s > kMaxSamples || (s & (s - 1)) != 0)
-      record_failure("G002", "image " + text(image) + " must have 1, 2, 4, 8, 16 or 32 samples");
+      tell("G002", "image " + text(image) + " must have 1, 2, 4, 8, 16 or 32 samples");
     else if (s > features_.native_msaa_max)
-      record_failure("G006",
-                     "image " + text(image) + " needs " + std::to_string(s) + " samples, this GPU has " +
-                         std::to_string(features_.native_msaa_max) + " (gpu.features.native_msaa_max)",
-                     "gpu.features.native_msaa_max = " + std::to_string(s) + " makes it native");
+      tell("G006",
+           "image " + text(image) + " needs " + std::to_string(s) + " samples, this GPU has " +
+               std::to_string(features_.native_msaa_max) + " (gpu.features.native_msaa_max)",
+           "gpu.features.native_msaa_max = " + std::to_string(s) + " makes it native");
     if (image.coverage_samples != 0) add(check_coverage_samples(image, features_));
   }
 
@@ -71,9 +70,8 @@ class Validator {
     const ImageDesc& image = graph_.image(id);
     if (image.samples != 1 || contents->width != image.width || contents->height != image.height ||
         info(image.format).bytes > 4 || info(image.format).is_depth)
-      record_failure("G009", "image " + text(image) + " is given contents of " +
-                                 std::to_string(contents->width) + "x" + std::to_string(contents->height) +
-                                 " texels of 32 bits");
+      tell("G009", "image " + text(image) + " is given contents of " + std::to_string(contents->width) + "x" +
+                       std::to_string(contents->height) + " texels of 32 bits");
     mark_written(id);
   }
 
@@ -81,9 +79,8 @@ class Validator {
     for (std::size_t slot = 0; slot < pass.sampled.size(); ++slot)
       if (const Format view = pass.view_of(graph_, slot);
           !same_bits(view, graph_.image(pass.sampled[slot]).format))
-        record_failure("G003", "pass `" + pass.name + "` reads image " +
-                                   text(graph_.image(pass.sampled[slot])) + " as " +
-                                   std::string(info(view).name));
+        tell("G003", "pass `" + pass.name + "` reads image " + text(graph_.image(pass.sampled[slot])) +
+                         " as " + std::string(info(view).name));
   }
 
   void check_pass(const Pass& pass) {
@@ -111,39 +108,36 @@ class Validator {
 
   void check_slots(const Pass& pass) {
     if (pass.sampled.size() > kMaxImageSlots || pass.storage.size() > kMaxBufferSlots)
-      record_failure("G007", "pass `" + pass.name + "` binds " + std::to_string(pass.sampled.size()) +
-                                 " images and " + std::to_string(pass.storage.size()) + " buffers, at most " +
-                                 std::to_string(kMaxImageSlots) + " and " + std::to_string(kMaxBufferSlots) +
-                                 " are supported");
+      tell("G007", "pass `" + pass.name + "` binds " + std::to_string(pass.sampled.size()) + " images and " +
+                       std::to_string(pass.storage.size()) + " buffers, at most " +
+                       std::to_string(kMaxImageSlots) + " and " + std::to_string(kMaxBufferSlots) +
+                       " are supported");
     const int s = pass.samples;
     if (s < 1 || s > kMaxSamples || (s & (s - 1)) != 0)
-      record_failure("G002", "pass `" + pass.name + "` rasterizes " + std::to_string(s) +
-                                 " samples, must be 1, 2, 4, 8, 16 or 32");
+      tell("G002", "pass `" + pass.name + "` rasterizes " + std::to_string(s) +
+                       " samples, must be 1, 2, 4, 8, 16 or 32");
     else if (s > features_.native_msaa_max && pass.depth == ImageId{} && pass.color.empty())
-      record_failure("G006",
-                     "pass `" + pass.name + "` rasterizes " + std::to_string(s) + " samples, this GPU has " +
-                         std::to_string(features_.native_msaa_max) + " (gpu.features.native_msaa_max)",
-                     "gpu.features.native_msaa_max = " + std::to_string(s) + " makes them native");
+      tell("G006",
+           "pass `" + pass.name + "` rasterizes " + std::to_string(s) + " samples, this GPU has " +
+               std::to_string(features_.native_msaa_max) + " (gpu.features.native_msaa_max)",
+           "gpu.features.native_msaa_max = " + std::to_string(s) + " makes them native");
   }
 
   void check_read(const Pass& pass, ImageId id) {
     if (written_[static_cast<std::size_t>(id.index)] == 0)
-      record_failure(
-          "G005",
-          "pass `" + pass.name + "` reads image " + text(graph_.image(id)) + " before any pass wrote it",
-          "clear it, or order the passes by what they read");
+      tell("G005",
+           "pass `" + pass.name + "` reads image " + text(graph_.image(id)) + " before any pass wrote it",
+           "clear it, or order the passes by what they read");
     if (graph_.image(id).coverage_samples != 0 && pass.kind != PassKind::resolve)
-      record_failure(
-          "G009",
-          "pass `" + pass.name + "` reads image " + text(graph_.image(id)) + ", which has a coverage map",
-          "only a resolve reads the map");
+      tell("G009",
+           "pass `" + pass.name + "` reads image " + text(graph_.image(id)) + ", which has a coverage map",
+           "only a resolve reads the map");
     const bool attached = std::find(pass.color.begin(), pass.color.end(), id) != pass.color.end() ||
                           (pass.depth == id && !pass.depth_read_only);
     if (attached)
-      record_failure(
-          "G004",
-          "pass `" + pass.name + "` reads image " + text(graph_.image(id)) + " while it draws into it",
-          "a feedback loop is undefined: copy the image first, or bind depth read-only");
+      tell("G004",
+           "pass `" + pass.name + "` reads image " + text(graph_.image(id)) + " while it draws into it",
+           "a feedback loop is undefined: copy the image first, or bind depth read-only");
   }
 
   void mark_written(ImageId id) { written_[static_cast<std::size_t>(id.index)] = 1; }
@@ -151,39 +145,37 @@ class Validator {
   void check_viewports(const Pass& pass) {
     if (pass.viewports.empty()) return;
     if (!features_.viewport_multicast)
-      record_failure("G006",
-                     "pass `" + pass.name + "` sends primitives to several viewports, which this GPU cannot",
-                     "gpu.features.viewport_multicast = true");
+      tell("G006", "pass `" + pass.name + "` sends primitives to several viewports, which this GPU cannot",
+           "gpu.features.viewport_multicast = true");
     const bool far = std::any_of(pass.viewports.begin(), pass.viewports.end(), [](ViewportShift shift) {
       return std::max(std::abs(shift.x), std::abs(shift.y)) > kSubpixelUnits;
     });
     if (pass.kind != PassKind::draw || pass.viewports.size() > kMaxViewports || far)
-      record_failure("G011",
-                     "pass `" + pass.name + "` has " + std::to_string(pass.viewports.size()) +
-                         " viewports: draws may have up to 16, shifted by up to one pixel",
-                     "draw the layers in passes of their own");
+      tell("G011",
+           "pass `" + pass.name + "` has " + std::to_string(pass.viewports.size()) +
+               " viewports: draws may have up to 16, shifted by up to one pixel",
+           "draw the layers in passes of their own");
   }
 
   // Layer l of every attachment is written under viewport l.
   void check_layers(const Pass& pass, const ImageDesc& image) {
     const int layers = pass.viewports.empty() ? 1 : static_cast<int>(pass.viewports.size());
     if (image.layers != layers)
-      record_failure("G011", "pass `" + pass.name + "` draws " + std::to_string(layers) +
-                                 " layers into image " + text(image) + " of " + std::to_string(image.layers));
+      tell("G011", "pass `" + pass.name + "` draws " + std::to_string(layers) + " layers into image " +
+                       text(image) + " of " + std::to_string(image.layers));
   }
 
   void check_attachments(const Pass& pass) {
     check_viewports(pass);
     if (pass.color.size() > kMaxColorTargets)
-      record_failure("G007", "pass `" + pass.name + "` has " + std::to_string(pass.color.size()) +
-                                 " color attachments, at most " + std::to_string(kMaxColorTargets) +
-                                 " are supported");
+      tell("G007", "pass `" + pass.name + "` has " + std::to_string(pass.color.size()) +
+                       " color attachments, at most " + std::to_string(kMaxColorTargets) + " are supported");
     for (const ImageId id : pass.color) {
       const ImageDesc& image = graph_.image(id);
       check_size(pass, image);
       if (info(image.format).is_depth)
-        record_failure("G003", "pass `" + pass.name + "` writes color to image " + text(image) +
-                                   ", which has a depth format");
+        tell("G003",
+             "pass `" + pass.name + "` writes color to image " + text(image) + ", which has a depth format");
       if (image.samples != pass.samples) check_mixed_samples(pass, image);
       mark_written(id);
     }
@@ -192,7 +184,7 @@ class Validator {
     check_stores(pass);
     if (pass.kind == PassKind::full_screen) {
       if (pass.fragment == nullptr)
-        record_failure("G007", "full-screen pass `" + pass.name + "` has no fragment program");
+        tell("G007", "full-screen pass `" + pass.name + "` has no fragment program");
       check_program(pass, pass.fragment, pass.state, 0);
     }
     for (const DrawBatch& batch : pass.batches) check_batch(pass, batch);
@@ -203,74 +195,70 @@ class Validator {
     const std::string message = "pass `" + pass.name + "` rasterizes " + std::to_string(pass.samples) +
                                 " samples into image " + text(image);
     if (image.samples > pass.samples || pass.samples % image.samples != 0)
-      record_failure("G002", message,
-                     "give the color image as many samples as the pass rasterizes, or a divisor");
+      tell("G002", message, "give the color image as many samples as the pass rasterizes, or a divisor");
     else if (!features_.target_independent_raster)
-      record_failure("G006", message + ", which this GPU cannot",
-                     "gpu.features.target_independent_raster = true");
+      tell("G006", message + ", which this GPU cannot", "gpu.features.target_independent_raster = true");
   }
 
   void check_stores(const Pass& pass) {
     if (!pass.targets.empty() && pass.kind == PassKind::draw)
-      record_failure(
-          "G007", "pass `" + pass.name + "` stores to images, which only full-screen and compute passes can");
+      tell("G007",
+           "pass `" + pass.name + "` stores to images, which only full-screen and compute passes can");
     for (std::size_t slot = 0; slot < pass.targets.size(); ++slot) {
       const ImageDesc& image = graph_.image(pass.targets[slot]);
       if (image.samples != 1 || info(image.format).bytes > 4 || info(image.format).is_depth ||
           !same_bits(pass.target_view_of(graph_, slot), image.format))
-        record_failure("G003", "pass `" + pass.name + "` stores to image " + text(image) + " as " +
-                                   std::string(info(pass.target_view_of(graph_, slot)).name));
+        tell("G003", "pass `" + pass.name + "` stores to image " + text(image) + " as " +
+                         std::string(info(pass.target_view_of(graph_, slot)).name));
       if (std::find(pass.sampled.begin(), pass.sampled.end(), pass.targets[slot]) != pass.sampled.end())
-        record_failure("G004",
-                       "pass `" + pass.name + "` reads image " + text(image) + " while it stores to it");
+        tell("G004", "pass `" + pass.name + "` reads image " + text(image) + " while it stores to it");
       mark_written(pass.targets[slot]);
     }
     const bool writes = pass.kind == PassKind::full_screen && pass.state.depth.write;
     if (writes && (pass.fragment == nullptr || !pass.fragment->writes_depth || pass.samples != 1))
-      record_failure("G007", "full-screen pass `" + pass.name +
-                                 "` writes depth, which its program must give, at one sample");
+      tell("G007",
+           "full-screen pass `" + pass.name + "` writes depth, which its program must give, at one sample");
   }
 
   void check_size(const Pass& pass, const ImageDesc& image) {
     check_layers(pass, image);
     if (image.width != pass.width || image.height != pass.height)
-      record_failure("G001", "pass `" + pass.name + "` of " + std::to_string(pass.width) + "x" +
-                                 std::to_string(pass.height) + " pixels has attachment " + text(image));
+      tell("G001", "pass `" + pass.name + "` of " + std::to_string(pass.width) + "x" +
+                       std::to_string(pass.height) + " pixels has attachment " + text(image));
   }
 
   void check_depth(const Pass& pass) {
     const ImageDesc& image = graph_.image(pass.depth);
     check_size(pass, image);
     if (!info(image.format).is_depth)
-      record_failure("G003", "pass `" + pass.name + "` uses image " + text(image) +
-                                 " as depth, which has a color format");
+      tell("G003",
+           "pass `" + pass.name + "` uses image " + text(image) + " as depth, which has a color format");
     if (image.samples != pass.samples)
-      record_failure("G002", "pass `" + pass.name + "` rasterizes " + std::to_string(pass.samples) +
-                                 " samples, its depth image " + text(image) + " differs");
+      tell("G002", "pass `" + pass.name + "` rasterizes " + std::to_string(pass.samples) +
+                       " samples, its depth image " + text(image) + " differs");
     if (pass.depth_read_only && written_[static_cast<std::size_t>(pass.depth.index)] == 0)
-      record_failure("G005", "pass `" + pass.name + "` tests against depth image " + text(image) +
-                                 " before any pass wrote it");
+      tell("G005",
+           "pass `" + pass.name + "` tests against depth image " + text(image) + " before any pass wrote it");
     const auto writes = [](const PipelineState& s) { return s.depth.write; };
     const bool any_write =
         writes(pass.state) || std::any_of(pass.batches.begin(), pass.batches.end(),
                                           [&](const DrawBatch& b) { return writes(b.state); });
     if (pass.depth_read_only && any_write)
-      record_failure("G004", "pass `" + pass.name + "` writes depth image " + text(image) +
-                                 ", which it binds read-only");
+      tell("G004",
+           "pass `" + pass.name + "` writes depth image " + text(image) + ", which it binds read-only");
     if (!pass.depth_read_only) mark_written(pass.depth);
   }
 
   void check_batch(const Pass& pass, const DrawBatch& batch) {
     if (batch.vertex == nullptr) {
-      record_failure("G007", "pass `" + pass.name + "` draws without a vertex program");
+      tell("G007", "pass `" + pass.name + "` draws without a vertex program");
       return;
     }
     check_state(pass, batch.state);
     if (batch.geometry != nullptr) check_geometry(pass, batch);
     if (batch.fragment == nullptr) {
       if (!pass.color.empty())
-        record_failure(
-            "G007", "pass `" + pass.name + "` has color attachments, but draws without a fragment program");
+        tell("G007", "pass `" + pass.name + "` has color attachments, but draws without a fragment program");
       return;
     }
     check_program(pass, batch.fragment, batch.state, batch.raster_scalars());
@@ -280,86 +268,81 @@ class Validator {
     const GeometryProgram& program = *batch.geometry;
     const std::string what = "pass `" + pass.name + "`: geometry program `" + program.name + "` ";
     if (batch.state.raster.topology != Topology::triangles)
-      record_failure("G007", what + "takes triangles, the draw has points or lines");
+      tell("G007", what + "takes triangles, the draw has points or lines");
     if (program.input_scalars != batch.vertex->varying_scalars)
-      record_failure("G007", what + "reads " + std::to_string(program.input_scalars) +
-                                 " varyings, the vertex program writes " +
-                                 std::to_string(batch.vertex->varying_scalars));
+      tell("G007", what + "reads " + std::to_string(program.input_scalars) +
+                       " varyings, the vertex program writes " +
+                       std::to_string(batch.vertex->varying_scalars));
     if (batch.tessellated_points) {
       if (program.output != GeometryOutput::points || !features_.tessellator_points)
-        record_failure("G006", what + "emits points from the tessellator, which this GPU cannot",
-                       "gpu.features.tessellator_points = true");
+        tell("G006", what + "emits points from the tessellator, which this GPU cannot",
+             "gpu.features.tessellator_points = true");
       return;
     }
     const int scalars = program.max_vertices * (4 + program.varying_scalars);
     if (scalars > functional_.gs_max_scalars)
-      record_failure("G012",
-                     what + "emits up to " + std::to_string(program.max_vertices) + " vertices of " +
-                         std::to_string(4 + program.varying_scalars) + " scalars, this GPU takes " +
-                         std::to_string(functional_.gs_max_scalars) + " scalars",
-                     "emit fewer vertices, or gpu.functional.gs_max_scalars = " + std::to_string(scalars));
+      tell("G012",
+           what + "emits up to " + std::to_string(program.max_vertices) + " vertices of " +
+               std::to_string(4 + program.varying_scalars) + " scalars, this GPU takes " +
+               std::to_string(functional_.gs_max_scalars) + " scalars",
+           "emit fewer vertices, or gpu.functional.gs_max_scalars = " + std::to_string(scalars));
   }
 
   void check_state(const Pass& pass, const PipelineState& state) {
     if (!state.raster.sample_positions.empty() && !features_.programmable_sample_positions)
-      record_failure("G006", "pass `" + pass.name + "` sets sample positions, which this GPU cannot",
-                     "gpu.features.programmable_sample_positions = true");
+      tell("G006", "pass `" + pass.name + "` sets sample positions, which this GPU cannot",
+           "gpu.features.programmable_sample_positions = true");
     const std::size_t positions = state.raster.sample_positions.size();
     if (positions != 0 && positions != static_cast<std::size_t>(pass.samples))
-      record_failure("G002", "pass `" + pass.name + "` sets " + std::to_string(positions) +
-                                 " sample positions for " + std::to_string(pass.samples) + " samples");
+      tell("G002", "pass `" + pass.name + "` sets " + std::to_string(positions) + " sample positions for " +
+                       std::to_string(pass.samples) + " samples");
     if (positions > kMaxProgrammablePositions ||
         std::any_of(state.raster.sample_positions.begin(), state.raster.sample_positions.end(),
                     [](SamplePosition p) { return std::max(p.x, p.y) > 7 || std::min(p.x, p.y) < -8; }))
-      record_failure("G002", "pass `" + pass.name + "` sets sample positions that no GPU can",
-                     "at most 16, each -8 to 7 sixteenths of a pixel from the center");
+      tell("G002", "pass `" + pass.name + "` sets sample positions that no GPU can",
+           "at most 16, each -8 to 7 sixteenths of a pixel from the center");
     if (state.raster.conservative && !features_.conservative_raster)
-      record_failure("G006", "pass `" + pass.name + "` rasterizes conservatively, which this GPU cannot",
-                     "gpu.features.conservative_raster = true");
+      tell("G006", "pass `" + pass.name + "` rasterizes conservatively, which this GPU cannot",
+           "gpu.features.conservative_raster = true");
     check_coverage(pass, state);
     const bool needs_depth = state.depth.test || state.depth.write || state.stencil.test;
     if (needs_depth && !pass.depth)
-      record_failure("G007",
-                     "pass `" + pass.name + "` tests or writes depth or stencil without a depth attachment");
+      tell("G007", "pass `" + pass.name + "` tests or writes depth or stencil without a depth attachment");
     if (state.stencil.test && pass.depth && !info(graph_.image(pass.depth).format).has_stencil)
-      record_failure("G003", "pass `" + pass.name + "` tests stencil in image " +
-                                 text(graph_.image(pass.depth)) + ", which has none");
+      tell("G003", "pass `" + pass.name + "` tests stencil in image " + text(graph_.image(pass.depth)) +
+                       ", which has none");
     for (std::size_t i = 0; i < state.blend.size() && i < pass.color.size(); ++i) {
       const ImageDesc& image = graph_.image(pass.color[i]);
       if (state.blend[i].enabled && info(image.format).is_integer)
-        record_failure("G003", "pass `" + pass.name + "` blends into integer image " + text(image));
+        tell("G003", "pass `" + pass.name + "` blends into integer image " + text(image));
     }
   }
 
   void check_coverage(const Pass& pass, const PipelineState& state) {
     const CoverageState& coverage = state.coverage;
     if (coverage.post_depth && !features_.post_depth_coverage)
-      record_failure("G006",
-                     "pass `" + pass.name + "` reads the coverage after depth tests, which this GPU cannot",
-                     "gpu.features.post_depth_coverage = true");
+      tell("G006", "pass `" + pass.name + "` reads the coverage after depth tests, which this GPU cannot",
+           "gpu.features.post_depth_coverage = true");
     if (coverage.post_depth && (!state.force_early_z || !pass.depth))
-      record_failure("G010",
-                     "pass `" + pass.name + "` reads the coverage after depth tests that are not early",
-                     "bind a depth image and force early tests");
+      tell("G010", "pass `" + pass.name + "` reads the coverage after depth tests that are not early",
+           "bind a depth image and force early tests");
     if (coverage.override_output && !features_.coverage_override)
-      record_failure("G006",
-                     "pass `" + pass.name + "` replaces coverage by a shader's mask, which this GPU cannot",
-                     "gpu.features.coverage_override = true");
+      tell("G006", "pass `" + pass.name + "` replaces coverage by a shader's mask, which this GPU cannot",
+           "gpu.features.coverage_override = true");
     if (coverage.override_output && (state.raster.sample_rate || coverage.alpha_to_coverage))
-      record_failure("G010",
-                     "pass `" + pass.name +
-                         "` replaces coverage by a shader's mask, and runs the shader for each " +
-                         "sample or takes coverage from alpha",
-                     "a mask that replaces the coverage is one a pixel");
+      tell("G010",
+           "pass `" + pass.name + "` replaces coverage by a shader's mask, and runs the shader for each " +
+               "sample or takes coverage from alpha",
+           "a mask that replaces the coverage is one a pixel");
   }
 
   void check_outputs(const Pass& pass, const FragmentProgram& program, const CoverageState& coverage) {
     if (coverage.override_output && !program.writes_mask)
-      record_failure("G010", "pass `" + pass.name + "`: fragment program `" + program.name +
-                                 "` has no mask to replace coverage");
+      tell("G010", "pass `" + pass.name + "`: fragment program `" + program.name +
+                       "` has no mask to replace coverage");
     if (coverage.alpha_to_coverage && program.color_outputs < 1)
-      record_failure("G010", "pass `" + pass.name + "`: fragment program `" + program.name +
-                                 "` has no alpha to take coverage from");
+      tell("G010", "pass `" + pass.name + "`: fragment program `" + program.name +
+                       "` has no alpha to take coverage from");
   }
 
   void check_program(const Pass& pass, const FragmentProgram* program, const PipelineState& state,
@@ -368,90 +351,85 @@ class Validator {
     if (pass.kind == PassKind::full_screen) check_state(pass, state);
     check_outputs(pass, *program, state.coverage);
     if (program->varying_scalars != varyings)
-      record_failure("G007", "pass `" + pass.name + "`: fragment program `" + program->name + "` reads " +
-                                 std::to_string(program->varying_scalars) +
-                                 " varyings, the vertex program writes " + std::to_string(varyings));
+      tell("G007", "pass `" + pass.name + "`: fragment program `" + program->name + "` reads " +
+                       std::to_string(program->varying_scalars) + " varyings, the vertex program writes " +
+                       std::to_string(varyings));
     if (static_cast<std::size_t>(program->color_outputs) < pass.color.size())
-      record_failure("G007", "pass `" + pass.name + "`: fragment program `" + program->name + "` writes " +
-                                 std::to_string(program->color_outputs) + " colors for " +
-                                 std::to_string(pass.color.size()) + " attachments");
+      tell("G007", "pass `" + pass.name + "`: fragment program `" + program->name + "` writes " +
+                       std::to_string(program->color_outputs) + " colors for " +
+                       std::to_string(pass.color.size()) + " attachments");
   }
 
   void check_compute(const Pass& pass) {
-    if (pass.compute == nullptr) record_failure("G007", "compute pass `" + pass.name + "` has no program");
+    if (pass.compute == nullptr) tell("G007", "compute pass `" + pass.name + "` has no program");
     // Only sums of floats depend on the order of groups, nothing else that a program can store.
     if (pass.compute != nullptr && pass.compute->ordered_storage && !features_.float_atomics)
-      record_failure("G006", "compute pass `" + pass.name + "` adds floats by atomics, which this GPU cannot",
-                     "gpu.features.float_atomics = true");
+      tell("G006", "compute pass `" + pass.name + "` adds floats by atomics, which this GPU cannot",
+           "gpu.features.float_atomics = true");
     if (pass.depth_planes && !features_.compressed_depth_read)
-      record_failure("G006", "compute pass `" + pass.name + "` reads compressed depth, which this GPU cannot",
-                     "gpu.features.compressed_depth_read = true");
+      tell("G006", "compute pass `" + pass.name + "` reads compressed depth, which this GPU cannot",
+           "gpu.features.compressed_depth_read = true");
     if (pass.depth_planes &&
         (!info(graph_.image(pass.depth_planes).format).is_depth ||
          std::find(pass.sampled.begin(), pass.sampled.end(), pass.depth_planes) == pass.sampled.end()))
-      record_failure("G009", "compute pass `" + pass.name + "` reads the planes of image " +
-                                 text(graph_.image(pass.depth_planes)) +
-                                 ", which is no depth image that it samples");
+      tell("G009", "compute pass `" + pass.name + "` reads the planes of image " +
+                       text(graph_.image(pass.depth_planes)) + ", which is no depth image that it samples");
     if (pass.groups_x < 1 || pass.groups_y < 1)
-      record_failure("G001", "compute pass `" + pass.name + "` has no groups");
+      tell("G001", "compute pass `" + pass.name + "` has no groups");
     if (pass.targets.size() > kMaxColorTargets)
-      record_failure("G007", "compute pass `" + pass.name + "` stores to " +
-                                 std::to_string(pass.targets.size()) + " images, at most " +
-                                 std::to_string(kMaxColorTargets) + " are supported");
+      tell("G007", "compute pass `" + pass.name + "` stores to " + std::to_string(pass.targets.size()) +
+                       " images, at most " + std::to_string(kMaxColorTargets) + " are supported");
     for (const ImageId id : pass.targets)
       mark_written(id);  // multisampled ones stand for flat buffers of samples
   }
 
   void check_transfer(const Pass& pass) {
     if (!pass.source || pass.targets.size() != 1) {
-      record_failure("G009", "pass `" + pass.name + "` needs one source and one target");
+      tell("G009", "pass `" + pass.name + "` needs one source and one target");
       return;
     }
     const ImageDesc& from = graph_.image(pass.source);
     const ImageDesc& to = graph_.image(pass.targets.front());
     if (from.width != to.width || from.height != to.height)
-      record_failure("G001", "pass `" + pass.name + "` from image " + text(from) + " to image " + text(to) +
-                                 ": sizes differ");
+      tell("G001",
+           "pass `" + pass.name + "` from image " + text(from) + " to image " + text(to) + ": sizes differ");
     if (from.layers != to.layers || (pass.kind == PassKind::resolve && from.layers > 1))
-      record_failure("G009",
-                     "pass `" + pass.name + "` transfers image " + text(from) + " of " +
-                         std::to_string(from.layers) + " layers to image " + text(to) + " of " +
-                         std::to_string(to.layers),
-                     "a resolve does not mix layers: merge them in a shader");
+      tell("G009",
+           "pass `" + pass.name + "` transfers image " + text(from) + " of " + std::to_string(from.layers) +
+               " layers to image " + text(to) + " of " + std::to_string(to.layers),
+           "a resolve does not mix layers: merge them in a shader");
     if (pass.kind == PassKind::resolve) {
       if (from.samples < 2 || to.samples != 1)
-        record_failure("G009", "pass `" + pass.name + "` resolves image " + text(from) + " to image " +
-                                   text(to) + ": the source must be multisampled, the target not");
+        tell("G009", "pass `" + pass.name + "` resolves image " + text(from) + " to image " + text(to) +
+                         ": the source must be multisampled, the target not");
       if (info(from.format).is_depth && pass.resolve == ResolveMode::max && from.format != to.format)
-        record_failure("G003", "pass `" + pass.name + "` resolves depth image " + text(from) + " to image " +
-                                   text(to) + ", whose format differs");
+        tell("G003", "pass `" + pass.name + "` resolves depth image " + text(from) + " to image " + text(to) +
+                         ", whose format differs");
       else if (info(from.format).is_integer ||
                (info(from.format).is_depth != (pass.resolve == ResolveMode::max)))
-        record_failure("G003", "pass `" + pass.name + "` resolves image " + text(from) +
-                                   ", whose values cannot be averaged");
+        tell("G003",
+             "pass `" + pass.name + "` resolves image " + text(from) + ", whose values cannot be averaged");
     } else if (from.samples != to.samples || !same_bits(from.format, to.format)) {
-      record_failure("G009", "pass `" + pass.name + "` copies image " + text(from) + " to image " + text(to) +
-                                 ": formats and sample counts must be equal");
+      tell("G009", "pass `" + pass.name + "` copies image " + text(from) + " to image " + text(to) +
+                       ": formats and sample counts must be equal");
     }
     mark_written(pass.targets.front());
   }
 
   void check_output() {
     if (!graph_.output()) {
-      record_failure("G008", "the frame has no output image");
+      tell("G008", "the frame has no output image");
       return;
     }
     const ImageDesc& image = graph_.image(graph_.output());
     if (image.samples != 1 || image.layers != 1)
-      record_failure("G008", "output image " + text(image) + " is multisampled or has layers",
-                     "resolve it first");
+      tell("G008", "output image " + text(image) + " is multisampled or has layers", "resolve it first");
     if (!same_bits(graph_.output_view(), image.format))
-      record_failure("G003", "output image " + text(image) + " is shown as " +
-                                 std::string(info(graph_.output_view()).name));
-    if (info(image.format).is_depth)
-      record_failure("G008", "output image " + text(image) + " has a depth format");
+      tell("G003",
+           "output image " + text(image) + " is shown as " + std::string(info(graph_.output_view()).name));
+    if (info(image.format).is_depth) tell("G008", "output image " + text(image) + " has a depth format");
     if (written_[static_cast<std::size_t>(graph_.output().index)] == 0)
-      record_failure("G005", "no pass writes the output image " + text(image));
+      tell("G005", "no pass writes the output image " + text(image));
   }
 
   const FrameGraph& graph_;
