@@ -45,17 +45,19 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) { return 
 /// GPUs get the trace of one whose features every technique can use.
 class SceneTraces {
  public:
-  SceneTraces(lab::View view, GpuConfig gpu) : scene_(std::move(view), silent_), gpu_(std::move(gpu)) {}
+  SceneTraces(lab::View view, GpuConfig gpu)
+      : scene_(std::move(view), cache_, silent_), gpu_(std::move(gpu)) {}
 
   WorkTrace of(const std::string& technique) {
     return store_.frame(scene_, algos::parse_technique(technique), gpu_, {}, nullptr).emulation->trace;
   }
 
  private:
+  lab::Cache cache_ = study_cache();
   lab::Observer silent_;
   lab::SceneView scene_;
   GpuConfig gpu_;
-  lab::TraceStore store_{{.jobs = 2, .disk = true}, silent_};
+  lab::TraceStore store_{{.jobs = 2, .disk = true}, cache_, silent_};
 };
 
 /// The shortest of a few runs, for engines that take less than a millisecond.

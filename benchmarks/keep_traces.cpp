@@ -17,8 +17,7 @@
 #include "cost_models/kept_traces.h"
 #include "cost_models/predictor.h"
 #include "hwsim/base/byte_codec.h"
-#include "lab/base/files.h"
-#include "lab/base/observer.h"
+#include "lab/environment.h"
 #include "lab/studies/published_runs.h"
 
 namespace hwsim::benchmarks {
@@ -55,13 +54,18 @@ bool same_predictions(const Experiment& a, const Experiment& b, int jobs) {
 
 int keep(const fs::path& folder, int jobs) {
   Printer printer;
+  const lab::LabOptions from_environment = lab::options_of_environment();
+  const lab::ConfigFolder configs(from_environment.config_folder);
+  const lab::Cache cache(from_environment.cache_folder, from_environment.cache_limit_bytes);
   KeptTraces kept;
   kept.sources = algos::source_digest();
   const Experiment emulated = lab::load_experiment(
-      lab::published_cells({}), cost_models::keeping(lab::emulated_traces(jobs, printer), kept), printer);
+      lab::published_cells({}, configs),
+      cost_models::keeping(lab::emulated_traces(jobs, cache, printer), kept), configs, printer);
   const std::vector<std::uint8_t> bytes = cost_models::encode_kept(kept);
-  const Experiment read = lab::load_experiment(
-      lab::published_cells({}), cost_models::source_of(cost_models::decode_kept(bytes)), printer);
+  const Experiment read =
+      lab::load_experiment(lab::published_cells({}, configs),
+                           cost_models::source_of(cost_models::decode_kept(bytes)), configs, printer);
   if (!same_predictions(emulated, read, jobs)) {
     std::fprintf(stderr, "predictions from the file differ from those of the traces: nothing was written\n");
     return 1;
@@ -76,8 +80,8 @@ int keep(const fs::path& folder, int jobs) {
   const cost_models::Validation validation = cost_models::validate(read, options, progress, first.optima);
   write(folder / "published.traces", std::string(bytes.begin(), bytes.end()));
   write(folder / "fold_optima.csv", cost_models::to_csv(validation.optima, read.parameters));
-  const std::string statements = lab::config_directory() + "/calibration/accuracy.csv";
-  for (const cost_models::Statement& s : cost_models::load_statements(statements))
+  for (const cost_models::Statement& s :
+       cost_models::load_statements(configs.calibration() + "/accuracy.csv"))
     if (s.papers == "all")
       std::printf("%s of %s: %.4g, stated %g to %g\n", s.figure.c_str(), s.split.c_str(),
                   cost_models::measured(s, validation), s.low, s.high);

@@ -4,7 +4,8 @@
 #include <sstream>
 
 #include "hwsim/gpu/gpu_keys.h"
-#include "lab/base/files.h"
+#include "lab/catalog/config_folder.h"
+#include "lab/environment.h"
 #include "lab/store/scene_view.h"
 
 namespace hwsim::benchmarks {
@@ -16,9 +17,15 @@ std::vector<std::string> split_list(const std::string& list) {
   return parts;
 }
 
+lab::Cache study_cache() {
+  const lab::LabOptions options = lab::options_of_environment();
+  return lab::Cache(options.cache_folder, options.cache_limit_bytes);
+}
+
 algos::FrameRequest open_study(const lab::View& view) {
+  const lab::Cache cache = study_cache();
   lab::Observer silent;
-  return lab::SceneView(view, silent).frame_request();
+  return lab::SceneView(view, cache, silent).frame_request();
 }
 
 pipeline::FrameGraph study_frame(algos::FrameRequest request, const std::string& technique,
@@ -29,10 +36,10 @@ pipeline::FrameGraph study_frame(algos::FrameRequest request, const std::string&
 }
 
 GpuConfig study_gpu(const std::string& id, const std::vector<std::string>& overlays) {
+  const lab::ConfigFolder folder(lab::options_of_environment().config_folder);
   std::vector<std::string> files;
-  for (const std::string& name : overlays)
-    files.push_back(lab::config_directory() + "/overlays/" + name + ".toml");
-  return load_gpu(id, files, {}, lab::gpu_directory());
+  for (const std::string& name : overlays) files.push_back(folder.overlay_file(name));
+  return load_gpu(id, files, {}, folder.gpus());
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {

@@ -8,11 +8,15 @@
 #include "hwsim/base/diagnostics.h"
 #include "hwsim/gpu/gpu_config.h"
 #include "lab/request/request.h"
+#include "lab/store/cache.h"
 
 namespace hwsim::benchmarks {
 
 /// The parts of a list between its commas.
 std::vector<std::string> split_list(const std::string& list);
+
+/// The cache that the environment names.
+lab::Cache study_cache();
 
 /// The frame of a view, its scene loaded as `hwsim run` loads it. The caller sets what the GPU has. Throws
 /// InputError.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+
 #include "lab/base/messages.h"
 #include "lab/studies/published_runs.h"
 
@@ -69,23 +71,36 @@ std::string label_of(const Result& result, const std::string& variation, bool se
 }  // namespace
 
 Lab::Lab(const LabOptions& options)
-    : silence_(std::make_unique<Observer>()),
-      session_(std::make_unique<Session>(TraceStore::Options{.jobs = options.jobs, .disk = options.use_cache},
-                                         options.observer ? *options.observer : *silence_)) {}
+    : catalog_(ConfigFolder(options.config_folder)),
+      silence_(std::make_unique<Observer>()),
+      session_(std::make_unique<Session>(options, options.observer ? *options.observer : *silence_)) {}
 
 Lab::~Lab() = default;
 Lab::Lab(Lab&&) noexcept = default;
 Lab& Lab::operator=(Lab&&) noexcept = default;
 
+const Cache& Lab::cache() const { return session_->cache(); }
+
+RunPlan Lab::plan(const Request& request, std::vector<Diagnostic>& problems) {
+  return make_plan(request, session_->files(), problems);
+}
+
 Run Lab::run(const Request& request, RunSink* sink) {
   return run(make_plan(request, session_->files()), sink);
 }
 
+std::optional<double> Lab::expected_seconds(const RunPlan& plan) const {
+  return cache().remembered_seconds(plan_key(plan, session_->jobs()));
+}
+
 Run Lab::run(const RunPlan& plan, RunSink* sink) {
+  const auto start = std::chrono::steady_clock::now();
   ResultSink results;
   Fork fork(results, sink);
   StageProgress progress(session_->observer(), Session::stages(plan));
   session_->run(plan, fork, progress);
+  cache().remember_seconds(plan_key(plan, session_->jobs()),
+                           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return results.take();
 }
 
@@ -109,6 +124,14 @@ Comparison Lab::compare(const Request& request, const std::vector<Variation>& va
     }
   }
   return lab::compare(labeled);
+}
+
+const SceneSummary& Lab::scene(const View& view) { return session_->scene(view).summary(); }
+
+const ReferenceImage& Lab::reference(const View& view, int samples) {
+  const StageProgress progress(session_->observer(), 1);
+  return session_->reference(session_->scene(view), samples,
+                             [&](double done, const std::string& what) { progress.update(done, what); });
 }
 
 Ranking Lab::rank(const Request& request, const std::string& budget, RunSink* sink,
@@ -150,26 +173,26 @@ SweepSummary Lab::sweep(const std::vector<PlannedPoint>& points, const SweepJob&
 
 Reproduction Lab::reproduce(const std::string& paper) {
   const auto calibration = session_->files().calibration();
-  const cost_models::Experiment experiment =
-      load_experiment(published_cells({paper}), session_->jobs(), session_->observer());
+  const cost_models::Experiment experiment = load_experiment({paper}, *session_);
   return lab::reproduce(paper, experiment, calibration.get(), session_->jobs(), session_->observer());
 }
 
 Validation Lab::validate(const std::vector<std::string>& papers) {
   cost_models::FitOptions options;
   options.jobs = session_->jobs();
-  return lab::validate(load_experiment(published_cells(papers), options.jobs, session_->observer()), options,
-                       session_->observer());
+  return errors_of(std::make_shared<const FittedModel>(
+      fit_and_validate(load_experiment(papers, *session_), options, session_->observer())));
 }
 
-Validation Lab::fit(const std::vector<std::string>& papers, int starts) {
+FittedModel Lab::fit(const std::vector<std::string>& papers, int starts) {
   cost_models::FitOptions options;
   options.jobs = session_->jobs();
   options.starts = starts;
-  cost_models::Experiment experiment =
-      load_experiment(published_cells(papers), options.jobs, session_->observer());
+  cost_models::Experiment experiment = load_experiment(papers, *session_);
   cost_models::check_parameter_count(experiment, cost_models::fitted_cells(experiment));
-  return lab::validate(std::move(experiment), options, session_->observer());
+  return fit_and_validate(std::move(experiment), options, session_->observer());
 }
+
+std::vector<SelfCheck> Lab::check_itself() { return lab::check_itself(*session_); }
 
 }  // namespace hwsim::lab

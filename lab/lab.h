@@ -2,35 +2,44 @@
 // The whole application as one class: a program asks a lab, and gets answers as plain data. A lab keeps the
 // scenes, traces and references that it has loaded, so that a second question costs less than the first.
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "lab/catalog/catalog.h"
+#include "lab/environment.h"
 #include "lab/point/run_sink.h"
 #include "lab/results/result.h"
 #include "lab/studies/comparison.h"
 #include "lab/studies/explanation.h"
 #include "lab/studies/ranking.h"
 #include "lab/studies/reproduction.h"
+#include "lab/studies/self_check.h"
 #include "lab/studies/sweep.h"
 #include "lab/studies/validation.h"
 #include "lab/studies/variation.h"
 
 namespace hwsim::lab {
 
-struct LabOptions {
-  int jobs = 1;                  ///< threads
-  bool use_cache = true;         ///< false: traces are neither read from the disk nor kept there
-  Observer* observer = nullptr;  ///< hears of progress, notes and warnings; outlives the lab; none: silence
-};
-
 /// Every function throws InputError for a mistake in what was asked, before anything is drawn where it can be
 /// told by then, and InternalError when hwsim broke one of its own laws. Not for several threads at once.
 class Lab {
  public:
+  /// The environment is not asked: options_of_environment() does that for who wants it.
   explicit Lab(const LabOptions& options = {});
   ~Lab();
   Lab(Lab&&) noexcept;
   Lab& operator=(Lab&&) noexcept;
+
+  /// What there is: GPUs, techniques, scenes, overlays, counters, published tables, error codes.
+  const Catalog& catalog() const { return catalog_; }
+  const Cache& cache() const;
+
+  /// The request with every value decided; its problems are appended, nothing is drawn.
+  RunPlan plan(const Request& request, std::vector<Diagnostic>& problems);
+
+  /// What the same plan took the last time; none when it is new.
+  std::optional<double> expected_seconds(const RunPlan& plan) const;
 
   /// Each technique on each GPU. `sink` is given every point with its images while it comes.
   Run run(const Request& request, RunSink* sink = nullptr);
@@ -39,6 +48,10 @@ class Lab {
   /// The request against each variation of it, each technique and each GPU; there must be two results at
   /// least.
   Comparison compare(const Request& request, const std::vector<Variation>& variations = {});
+
+  /// What the lab knows of a view's scene, and the view's ray-traced truth. Valid as long as the lab.
+  const SceneSummary& scene(const View& view);
+  const ReferenceImage& reference(const View& view, int samples);
 
   /// The request's techniques on its GPU, with `none` among them, under a budget ("aa_ms<=1.5,
   /// extra_mib<=192"; empty: none). `contact_sheet` receives crops where the images err most.
@@ -64,9 +77,13 @@ class Lab {
   Validation validate(const std::vector<std::string>& papers = {});
   /// The same from several random starts, for write_calibration. Throws InputError M004 and M005 when there
   /// are more parameters than the published times can tell.
-  Validation fit(const std::vector<std::string>& papers = {}, int starts = 10);
+  FittedModel fit(const std::vector<std::string>& papers = {}, int starts = 10);
+
+  /// Whether hwsim works here: its files, its modules, its cache, a small simulation.
+  std::vector<SelfCheck> check_itself();
 
  private:
+  Catalog catalog_;
   std::unique_ptr<Observer> silence_;
   std::unique_ptr<Session> session_;
 };

@@ -205,7 +205,7 @@ void Parser::add_config() {
   add_overlays(shower, config.overlays);
   add_sets(shower, config.sets);
   CLI::App& schema = action("schema", kHelpConfigSchema, Action::schema);
-  schema.add_option("KIND", config.names, "gpu (default) or run")->expected(0, 1)->type_name(" ");
+  schema.add_option("KIND", config.names, "gpu (default), run or manifest")->expected(0, 1)->type_name(" ");
   CLI::App& diff = action("diff", kHelpConfigDiff, Action::diff);
   diff.add_option("GPU", config.names, "Two GPUs or .toml files")->required()->expected(2)->type_name(" ");
 }

@@ -109,6 +109,7 @@ Prints a complete GPU file: what its parents, overlays and --set made of it.)";
 inline constexpr std::string_view kHelpConfigSchema = R"(Examples:
   hwsim config schema
   hwsim config schema run
+  hwsim config schema manifest
 
 Prints the JSON Schema of a file, for editors.)";
 

@@ -74,11 +74,10 @@ Request request_of(const RunOptions& options) {
   return request;
 }
 
-RunPlan plan_of(const RunOptions& options) {
-  ConfigFiles files;
+RunPlan plan_of(const RunOptions& options, Lab& lab) {
   std::vector<Diagnostic> problems;
   const Request request = request_with(options, problems);
-  RunPlan plan = make_plan(request, files, problems);
+  RunPlan plan = lab.plan(request, problems);
   if (!problems.empty()) throw InputError(problems);
   return plan;
 }

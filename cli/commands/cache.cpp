@@ -3,10 +3,10 @@
 #include <filesystem>
 
 #include "cli/commands/commands.h"
+#include "cli/commands/lab_options.h"
 #include "cli/terminal/answer.h"
 #include "lab/base/messages.h"
 #include "lab/base/table.h"
-#include "lab/store/cache.h"
 
 namespace hwsim::cli {
 namespace {
@@ -25,7 +25,8 @@ Table file_table(const std::vector<CachedFile>& files) {
 }  // namespace
 
 ExitStatus cache(const CacheOptions& options, Context& context) {
-  std::vector<CachedFile> files = cached_files();
+  const Lab lab(lab_options(options.common, context.log));
+  std::vector<CachedFile> files = lab.cache().files();
   if (options.prune && options.keep_mib)
     files = least_recently_used(std::move(files), std::uint64_t{*options.keep_mib} << 20);
   else if (options.prune && !options.all)
@@ -41,8 +42,7 @@ ExitStatus cache(const CacheOptions& options, Context& context) {
   print({.table = file_table(files)}, options.common);
   const char* verb = !options.prune ? "in" : options.dry_run ? "would be removed from" : "removed from";
   context.log.say(fmt::format("{} files, {:.1f} MiB {} {}", files.size(),
-                              static_cast<double>(bytes) / (1024.0 * 1024.0), verb,
-                              fs::path(cache_directory(CacheFolder::scenes)).parent_path().string()));
+                              static_cast<double>(bytes) / (1024.0 * 1024.0), verb, lab.cache().folder()));
   return ExitStatus::done;
 }
 

@@ -1,22 +1,24 @@
 #include "cli/commands/commands.h"
+#include "cli/commands/lab_options.h"
 #include "cli/terminal/answer.h"
 #include "lab/base/messages.h"
 #include "lab/catalog/gpu_view.h"
 #include "lab/request/run_file.h"
+#include "lab/results/run_files.h"
 
 namespace hwsim::cli {
 namespace {
 
 /// Every file is looked at before the first mistake is reported. A file of kind "run" is one too.
-ExitStatus check(const ConfigOptions& options) {
+ExitStatus check(const ConfigOptions& options, const ConfigFolder& folder) {
   std::vector<Diagnostic> problems;
   Table table{{{"file", "file"}, {"id", "id"}, {"state", "state"}}, {}};
   for (const std::string& name : options.names) try {
       if (name.ends_with("run.toml")) {
-        load_gpu_from_options(read_run_file(name).gpus.front(), {}, {});
+        load_gpu_from_options(folder, read_run_file(name).gpus.front(), {}, {});
         table.rows.push_back({name, "run", "ok"});
       } else {
-        table.rows.push_back({name, load_gpu_from_options(name, {}, {}).id, "ok"});
+        table.rows.push_back({name, load_gpu_from_options(folder, name, {}, {}).id, "ok"});
       }
     } catch (const InputError& error) {
       problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
@@ -29,19 +31,22 @@ ExitStatus check(const ConfigOptions& options) {
 std::string schema_of(const std::vector<std::string>& names) {
   if (names.empty() || names.front() == "gpu") return gpu_schema_json();
   if (names.front() == "run") return run_schema_json();
-  fail_usage("U003", "no schema of `" + names.front() + "`, only of gpu and run");
+  if (names.front() == "manifest") return manifest_schema_json();
+  fail_usage("U003", "no schema of `" + names.front() + "`, only of gpu, run and manifest");
 }
 
 }  // namespace
 
 ExitStatus config(const ConfigOptions& options, Context& context) {
   using Action = ConfigOptions::Action;
+  const Lab lab(lab_options(options.common, context.log));
+  const ConfigFolder& folder = lab.catalog().folder();
   const auto load = [&](size_t i) {
-    return load_gpu_from_options(options.names[i], options.overlays, options.sets);
+    return load_gpu_from_options(folder, options.names[i], options.overlays, options.sets);
   };
   switch (options.action) {
     case Action::check:
-      return check(options);
+      return check(options, folder);
     case Action::show:
       if (options.common.formats.empty())
         write_output(show(load(0), options.origin));

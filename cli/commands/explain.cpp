@@ -51,8 +51,8 @@ Table joined(const std::vector<Explanation>& explanations, bool every) {
 }  // namespace
 
 ExitStatus explain(const ExplainOptions& options, Context& context) {
-  const std::vector<Explanation> explanations =
-      Lab(lab_options(options, context.log)).explain(plan_of(options));
+  Lab lab(lab_options(options, context.log));
+  const std::vector<Explanation> explanations = lab.explain(plan_of(options, lab));
   std::string heading, footing;
   for (const Explanation& explanation : explanations) heading += text_of(explanation);
   if (explanations.size() > 1) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "cli/commands/commands.h"
+#include "cli/commands/lab_options.h"
 #include "cli/terminal/answer.h"
-#include "lab/lab.h"
 #include "lab/studies/published_runs.h"
 
 namespace hwsim::cli {
@@ -12,33 +12,6 @@ namespace {
 
 using cost_models::Experiment;
 using cost_models::Fit;
-
-std::string state_of(const cost_models::Estimate& e) {
-  if (!e.used) return "no data";
-  if (e.at_bound) return "at bound";
-  return e.identified ? "" : "not identified";
-}
-
-Table parameter_table(const Experiment& experiment, const Fit& fit) {
-  Table table{{{"parameter", "parameter"},
-               {"unit", "unit"},
-               {"start", "start", true},
-               {"low", "low", true},
-               {"high", "high", true},
-               {"value", "fitted", true},
-               {"low90", "90 % from", true},
-               {"high90", "to", true},
-               {"state", "state"},
-               {"meaning", "meaning", false, 60}},
-              {}};
-  for (std::size_t i = 0; i < experiment.parameters.size(); ++i) {
-    const cost_models::FittedParameter& p = experiment.parameters[i];
-    const cost_models::Estimate& e = fit.estimates[i];
-    table.rows.push_back({p.id(), p.unit, Real{p.start, 3}, Real{p.low, 3}, Real{p.high, 3}, Real{e.value, 3},
-                          Real{e.low90, 3}, Real{e.high90, 3}, state_of(e), p.meaning});
-  }
-  return table;
-}
 
 std::string correlations_text(const Experiment& experiment, const Fit& fit) {
   std::string text;
@@ -72,18 +45,18 @@ std::string heading(const Fit& fit, double wall_s) {
 }  // namespace
 
 ExitStatus fit(const FitOptions& options, Context& context) {
+  Lab lab(lab_options(options.common, context.log));
   if (options.dry_run) {
-    print({.table = plan_table(published_cells(options.papers))}, options.common);
+    print({.table = plan_table(published_cells(options.papers, lab.catalog().folder()))}, options.common);
     return ExitStatus::done;
   }
-  Lab lab({.jobs = options.common.jobs, .observer = &context.log});
-  const lab::Validation answer = lab.fit(options.papers, options.starts);
-  write_calibration(answer, options.out);
-  const Fit& fit = answer.figures.fit;
-  const Table not_run = not_run_table(answer.experiment);
-  print({.table = parameter_table(answer.experiment, fit),
-         .heading = heading(fit, answer.fit_wall_s),
-         .footing = "\n" + starts_text(fit) + correlations_text(answer.experiment, fit) +
+  const FittedModel model = lab.fit(options.papers, options.starts);
+  write_calibration(model, options.out);
+  const Fit& fit = model.figures.fit;
+  const Table not_run = not_run_table(model.experiment);
+  print({.table = parameter_table(model),
+         .heading = heading(fit, model.fit_wall_s),
+         .footing = "\n" + starts_text(fit) + correlations_text(model.experiment, fit) +
                     (not_run.rows.empty() ? "" : "\n" + to_text(not_run))},
         options.common);
   return fit.converged ? ExitStatus::done : ExitStatus::run_failed;

@@ -1,14 +1,23 @@
 #pragma once
-// What the flags of a run say of the lab that does it.
+// What the environment and the flags say of the lab that does the work.
 #include "cli/arguments/options.h"
 #include "cli/terminal/terminal.h"
 #include "lab/lab.h"
 
 namespace hwsim::cli {
 
-/// `log` must outlive the lab.
-inline LabOptions lab_options(const RunOptions& options, Log& log) {
-  return {.jobs = options.common.jobs, .use_cache = !options.no_cache, .observer = &log};
+/// `log` must outlive the lab. Throws InputError U017.
+inline LabOptions lab_options(const CommonOptions& common, Log& log) {
+  LabOptions options = options_of_environment();
+  options.jobs = common.jobs;
+  options.observer = &log;
+  return options;
+}
+
+inline LabOptions lab_options(const RunOptions& run, Log& log) {
+  LabOptions options = lab_options(run.common, log);
+  options.use_cache = !run.no_cache;
+  return options;
 }
 
 }  // namespace hwsim::cli

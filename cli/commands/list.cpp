@@ -1,21 +1,20 @@
-#include <functional>
 #include <map>
 
 #include "cli/commands/commands.h"
+#include "cli/commands/lab_options.h"
 #include "cli/terminal/answer.h"
 #include "lab/base/messages.h"
-#include "lab/catalog/catalog.h"
-#include "lab/catalog/overlays.h"
 
 namespace hwsim::cli {
 
 ExitStatus list(const ListOptions& options, Context& context) {
-  static const std::map<std::string, std::function<Table()>> catalogs = {{"gpus", gpu_catalog},
-                                                                         {"scenes", scene_catalog},
-                                                                         {"techniques", technique_catalog},
-                                                                         {"counters", counter_catalog_table},
-                                                                         {"overlays", overlay_catalog},
-                                                                         {"tables", table_catalog}};
+  static const std::map<std::string, Table (Catalog::*)() const> catalogs = {
+      {"gpus", &Catalog::gpus},
+      {"scenes", &Catalog::scenes},
+      {"techniques", &Catalog::techniques},
+      {"counters", &Catalog::counters},
+      {"overlays", &Catalog::overlays},
+      {"tables", &Catalog::published_tables}};
   const auto found = catalogs.find(options.what);
   if (found == catalogs.end()) {
     std::vector<std::string> names;
@@ -25,7 +24,8 @@ ExitStatus list(const ListOptions& options, Context& context) {
         "cannot list `" + options.what + "`, only gpus, scenes, techniques, counters, overlays or tables",
         did_you_mean(options.what, names));
   }
-  const Table table = found->second();
+  const Lab lab(lab_options(options.common, context.log));
+  const Table table = (lab.catalog().*found->second)();
   print({.table = table}, options.common);
   if (table.rows.empty()) context.log.say("no " + options.what + " come with this version");
   return ExitStatus::done;

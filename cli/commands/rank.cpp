@@ -38,14 +38,15 @@ std::string sentence(const Ranking& ranking) {
 
 ExitStatus rank(const RankOptions& options, Context& context) {
   if (!options.budget.empty()) parse_budget(options.budget);  // a mistake in it comes first
-  const RunPlan plan = ranking_plan(plan_of(with_defaults(options)));
+  Lab lab(lab_options(options, context.log));
+  const RunPlan plan = ranking_plan(plan_of(with_defaults(options), lab));
   context.log.say(plan_text(plan));
   InterruptGuard guard;
   RunRecord record(options.out, {plan, plan.view.scene + options.budget, context.arguments,
                                  RunRecord::Layout::folder_a_point});
   guard.remove_on_interrupt(record.partial());
   pipeline::Image sheet;
-  const Ranking ranking = Lab(lab_options(options, context.log)).rank(plan, options.budget, &record, &sheet);
+  const Ranking ranking = lab.rank(plan, options.budget, &record, &sheet);
 
   const Table table = ranking_table(ranking);
   const nlohmann::ordered_json json = to_json(ranking);

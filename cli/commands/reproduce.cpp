@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "cli/commands/commands.h"
+#include "cli/commands/lab_options.h"
 #include "cli/terminal/answer.h"
-#include "lab/lab.h"
 #include "lab/studies/published_runs.h"
 
 namespace hwsim::cli {
@@ -37,11 +37,11 @@ void print_both(const Reproduction& reproduction, const CommonOptions& options) 
 
 ExitStatus reproduce(const ReproduceOptions& options, Context& context) {
   check_papers({options.paper});
+  Lab lab(lab_options(options.common, context.log));
   if (options.dry_run) {
-    print({.table = plan_table(published_cells({options.paper}))}, options.common);
+    print({.table = plan_table(published_cells({options.paper}, lab.catalog().folder()))}, options.common);
     return ExitStatus::done;
   }
-  Lab lab({.jobs = options.common.jobs, .observer = &context.log});
   const Reproduction reproduction = lab.reproduce(options.paper);
   if (!options.out.empty()) write_pictures(reproduction, options.out);
   print_both(reproduction, options.common);

@@ -1,6 +1,6 @@
 #pragma once
-// Files that the application reads and writes, and where it finds its own.
-#include <cstdint>
+// Files that the application reads and writes.
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -12,13 +12,22 @@ void write_file(const std::string& path, std::string_view text);
 /// Throws InputError U011 when it cannot be read.
 std::string read_file(const std::string& path);
 
-/// The folder with gpus/, scenes/ and published/: $HWSIM_CONFIG_DIR, else ../share/hwsim/configs beside the
-/// program's folder, else the source tree that it was built from. Throws InputError U012 when there is none.
-std::string config_directory();
-
-std::string gpu_directory();  ///< config_directory()/gpus
-
 /// 64-bit FNV-1a as 16 hex digits: names of cached files, ids of runs. Not for untrusted keys.
 std::string hash_hex(std::string_view bytes);
+
+/// A folder of its own below the system's temporary directory, removed with all that is in it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();  ///< throws InputError U010 when it cannot be made
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
 
 }  // namespace hwsim::lab

@@ -52,6 +52,13 @@ std::vector<std::string> wrap(const std::string& text, size_t columns) {
   return lines;
 }
 
+Cell cell_from_json(const nlohmann::ordered_json& value) {
+  if (value.is_null()) return NotApplicable{};
+  if (value.is_number_unsigned()) return value.get<std::uint64_t>();
+  if (value.is_number()) return Real{value.get<double>()};
+  return value.get<std::string>();
+}
+
 void append_row(std::string& out, const Table& table, const std::vector<std::vector<std::string>>& cells,
                 const std::vector<size_t>& widths) {
   size_t height = 1;
@@ -134,6 +141,17 @@ nlohmann::ordered_json to_json(const Table& table) {
     rows.push_back(std::move(object));
   }
   return rows;
+}
+
+Table table_from_json(const nlohmann::ordered_json& json) {
+  Table table;
+  if (!json.empty())
+    for (const auto& [key, value] : json.at(0).items()) table.columns.push_back({key, key});
+  for (const nlohmann::ordered_json& object : json) {
+    std::vector<Cell>& row = table.rows.emplace_back();
+    for (const Column& column : table.columns) row.push_back(cell_from_json(object.at(column.id)));
+  }
+  return table;
 }
 
 }  // namespace hwsim::lab

@@ -33,6 +33,10 @@ std::string to_csv(const Table& table);  ///< RFC 4180: one header line, CRLF
 std::string to_markdown(const Table& table);
 nlohmann::ordered_json to_json(const Table& table);  ///< an array of objects
 
+/// Columns are called by their keys; how many decimals are shown is lost. Throws nlohmann::json::exception
+/// where there is no array of objects with equal keys.
+Table table_from_json(const nlohmann::ordered_json& json);
+
 /// Digits that read back to the same value.
 std::string exact(double value);
 

@@ -7,9 +7,8 @@
 
 #include "algos/techniques.h"
 #include "hwsim/base/csv.h"
+#include "hwsim/config/toml_file.h"
 #include "hwsim/gpu/gpu_config.h"
-#include "hwsim/trace/counters.h"
-#include "lab/base/files.h"
 #include "pipeline/open/scene_source.h"
 
 namespace hwsim::lab {
@@ -19,18 +18,16 @@ namespace fs = std::filesystem;
 
 constexpr size_t kTextColumns = 72;
 
-fs::path published_directory() { return fs::path(config_directory()) / "published"; }
-
 }  // namespace
 
-Table gpu_catalog() {
+Table Catalog::gpus() const {
   Table table{{{"id", "id"},
                {"title", "title"},
                {"architecture", "architecture"},
                {"core_clock_mhz", "core MHz", true},
                {"dram_bandwidth_gb_s", "DRAM GB/s", true}},
               {}};
-  const std::string directory = gpu_directory();
+  const std::string directory = folder_.gpus();
   for (const std::string& id : list_gpus(directory)) {
     const GpuConfig gpu = load_gpu(id, {}, {}, directory);
     table.rows.push_back(
@@ -39,7 +36,7 @@ Table gpu_catalog() {
   return table;
 }
 
-Table scene_catalog() {
+Table Catalog::scenes() const {
   Table table{
       {{"name", "name"}, {"parameters", "parameters", false, 40}, {"description", "description", false, 60}},
       {}};
@@ -53,7 +50,7 @@ Table scene_catalog() {
   return table;
 }
 
-Table technique_catalog() {
+Table Catalog::techniques() const {
   Table table{{{"name", "name"},
                {"kind", "kind"},
                {"parameters", "parameters", false, 40},
@@ -69,7 +66,7 @@ Table technique_catalog() {
   return table;
 }
 
-Table counter_catalog_table() {
+Table Catalog::counters() const {
   Table table{{{"id", "id"},
                {"unit", "unit"},
                {"unit_kind", "kind"},
@@ -81,10 +78,28 @@ Table counter_catalog_table() {
   return table;
 }
 
-Table table_catalog() {
+Table Catalog::overlays() const {
+  Table table{{{"name", "name"}, {"about", "what if", false, 60}, {"changes", "changes", false, 50}}, {}};
+  for (const std::string& name : folder_.overlay_names()) {
+    std::vector<Diagnostic> problems;
+    std::string about, changes;
+    for (const TomlEntry& entry : read_toml_file(folder_.overlay_file(name), problems).entries) {
+      if (!entry.value || entry.path == "schema" || entry.path == "kind") continue;
+      const auto* text = std::get_if<std::string>(&*entry.value);
+      if (entry.path == "about" && text)
+        about = *text;
+      else
+        changes += (changes.empty() ? "" : ", ") + entry.path + " " + (text ? *text : to_toml(*entry.value));
+    }
+    table.rows.push_back({name, about, changes});
+  }
+  return table;
+}
+
+Table Catalog::published_tables() const {
   Table table{{{"name", "name"}, {"rows", "rows", true}, {"columns", "columns", false, kTextColumns}}, {}};
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(published_directory(), error)) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_.published(), error)) {
     if (entry.path().extension() != ".csv") continue;
     const Table content = read_table(entry.path().string());
     std::string columns;
@@ -97,12 +112,6 @@ Table table_catalog() {
   return table;
 }
 
-std::vector<std::string> names_of(const Table& catalog) {
-  std::vector<std::string> names;
-  for (const auto& row : catalog.rows) names.push_back(std::get<std::string>(row.front()));
-  return names;
-}
-
 Table read_table(const std::string& path) {
   const CsvFile file = read_csv(path);
   Table table;
@@ -111,8 +120,17 @@ Table read_table(const std::string& path) {
   return table;
 }
 
-std::string published_table_path(const std::string& name) {
-  return (published_directory() / (name + ".csv")).string();
+std::vector<std::string> names_of(const Table& table) {
+  std::vector<std::string> names;
+  for (const auto& row : table.rows) names.push_back(std::get<std::string>(row.front()));
+  return names;
+}
+
+std::vector<std::string> Catalog::entry_names() const {
+  std::vector<std::string> names;
+  for (const Table& table : {scenes(), techniques(), counters(), published_tables()})
+    for (std::string& name : names_of(table)) names.push_back(std::move(name));
+  return names;
 }
 
 }  // namespace hwsim::lab

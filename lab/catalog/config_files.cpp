@@ -9,11 +9,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path calibrated_directory() { return fs::path(config_directory()) / "calibrated"; }
-
 /// The calibrated file of a GPU, or its documented one.
-std::string gpu_file(const std::string& name) {
-  const fs::path path = calibrated_directory() / (name + ".toml");
+std::string gpu_file(const std::string& name, const ConfigFolder& folder) {
+  const fs::path path = fs::path(folder.calibrated()) / (name + ".toml");
   std::error_code error;
   return fs::exists(path, error) ? path.string() : name;
 }
@@ -25,13 +23,15 @@ GpuConfig ConfigFiles::gpu(const std::string& name, const std::vector<std::strin
   const GpuKey key{name, overlays, calibrated};
   auto known = gpus_.find(key);
   if (known == gpus_.end())
-    known = gpus_.emplace(key, GpuFiles(calibrated ? gpu_file(name) : name, overlays, gpu_directory())).first;
+    known =
+        gpus_.emplace(key, GpuFiles(calibrated ? gpu_file(name, folder_) : name, overlays, folder_.gpus()))
+            .first;
   return known->second.with(sets);
 }
 
 std::shared_ptr<const cost_models::Calibration> ConfigFiles::calibration() {
   if (calibration_read_) return calibration_;
-  const fs::path path = calibrated_directory() / "calibration.json";
+  const fs::path path = fs::path(folder_.calibrated()) / "calibration.json";
   std::error_code error;
   if (fs::exists(path, error))
     calibration_ = std::make_shared<const cost_models::Calibration>(

@@ -10,24 +10,28 @@
 
 #include "cost_models/calibration.h"
 #include "hwsim/gpu/gpu_files.h"
+#include "lab/catalog/config_folder.h"
 
 namespace hwsim::lab {
 
 /// Not for several threads at once.
 class ConfigFiles {
  public:
+  explicit ConfigFiles(ConfigFolder folder = ConfigFolder()) : folder_(std::move(folder)) {}
+  const ConfigFolder& folder() const { return folder_; }
+
   /// The GPU of an id or a file, with overlay files, and those of `sets` whose group is "gpu".
   /// `calibrated`: with the fitted values of its calibrated file, where there is one. Throws InputError with
   /// every problem found.
   GpuConfig gpu(const std::string& name, const std::vector<std::string>& overlays,
                 std::span<const Assignment> sets, bool calibrated);
 
-  /// config_directory()/calibrated/calibration.json; null when nothing was fitted yet. Throws InputError
-  /// M006.
+  /// calibrated/calibration.json; null when nothing was fitted yet. Throws InputError M006.
   std::shared_ptr<const cost_models::Calibration> calibration();
 
  private:
   using GpuKey = std::tuple<std::string, std::vector<std::string>, bool>;
+  ConfigFolder folder_;
   std::map<GpuKey, GpuFiles> gpus_;
   std::shared_ptr<const cost_models::Calibration> calibration_;
   bool calibration_read_ = false;

@@ -1,19 +1,18 @@
 #include "lab/catalog/gpu_view.h"
 
 #include "hwsim/config/settings.h"
-#include "lab/base/files.h"
-#include "lab/catalog/overlays.h"
 
 namespace hwsim::lab {
 
-GpuConfig load_gpu_from_options(const std::string& name, const std::vector<std::string>& overlays,
+GpuConfig load_gpu_from_options(const ConfigFolder& folder, const std::string& name,
+                                const std::vector<std::string>& overlays,
                                 const std::vector<std::string>& sets) {
   std::vector<Assignment> assignments;
   for (const std::string& text : sets) assignments.push_back(parse_assignment(text));
   check_groups(assignments, std::vector<std::string>{"gpu"});
   std::vector<std::string> files;
-  for (const std::string& overlay : overlays) files.push_back(overlay_file(overlay));
-  return load_gpu(name, files, assignments, gpu_directory());
+  for (const std::string& overlay : overlays) files.push_back(folder.overlay_file(overlay));
+  return load_gpu(name, files, assignments, folder.gpus());
 }
 
 Table key_table(const GpuConfig& gpu, bool with_origin) {

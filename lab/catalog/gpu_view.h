@@ -5,11 +5,13 @@
 
 #include "hwsim/gpu/gpu_config.h"
 #include "lab/base/table.h"
+#include "lab/catalog/config_folder.h"
 
 namespace hwsim::lab {
 
 /// Throws InputError; only gpu.* may be set.
-GpuConfig load_gpu_from_options(const std::string& name, const std::vector<std::string>& overlays,
+GpuConfig load_gpu_from_options(const ConfigFolder& folder, const std::string& name,
+                                const std::vector<std::string>& overlays,
                                 const std::vector<std::string>& sets);
 
 /// Key, value, meaning; with_origin adds where each value comes from.

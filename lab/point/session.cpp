@@ -9,7 +9,7 @@ std::string point_name(const algos::TechniqueChoice& technique, const GpuConfig&
 SceneView& Session::scene(const View& view) {
   for (const auto& scene : scenes_)
     if (scene->plan() == view) return *scene;
-  scenes_.push_back(std::make_unique<SceneView>(view, observer_));
+  scenes_.push_back(std::make_unique<SceneView>(view, cache_, observer_));
   return *scenes_.back();
 }
 
@@ -17,7 +17,7 @@ const ReferenceImage& Session::reference(SceneView& scene, int samples, const Pr
   for (const auto& kept : references_)
     if (kept->scene == &scene && kept->samples == samples) return kept->image;
   references_.push_back(std::make_unique<KeptReference>(
-      KeptReference{&scene, samples, make_reference(scene, samples, options_.jobs, progress)}));
+      KeptReference{&scene, samples, make_reference(scene, samples, jobs_, cache_, progress)}));
   return references_.back()->image;
 }
 

@@ -13,12 +13,17 @@ namespace hwsim::lab {
 
 class Session {
  public:
-  /// `observer` must outlive the session.
-  Session(const TraceStore::Options& options, Observer& observer)
-      : options_(options), observer_(observer), traces_(options, observer) {}
+  /// `observer`, which takes the place of the options' own, must outlive the session.
+  Session(const LabOptions& options, Observer& observer)
+      : jobs_(options.jobs),
+        observer_(observer),
+        files_(ConfigFolder(options.config_folder)),
+        cache_(options.cache_folder, options.cache_limit_bytes),
+        traces_({.jobs = options.jobs, .disk = options.use_cache}, cache_, observer) {}
 
   Observer& observer() const { return observer_; }
-  int jobs() const { return options_.jobs; }
+  int jobs() const { return jobs_; }
+  const Cache& cache() const { return cache_; }
   TraceStore& traces() { return traces_; }
   ConfigFiles& files() { return files_; }
 
@@ -42,9 +47,10 @@ class Session {
     ReferenceImage image;
   };
 
-  TraceStore::Options options_;
+  int jobs_;
   Observer& observer_;
   ConfigFiles files_;
+  Cache cache_;
   TraceStore traces_;
   std::vector<std::unique_ptr<SceneView>> scenes_;
   std::vector<std::unique_ptr<KeptReference>> references_;

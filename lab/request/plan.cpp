@@ -9,15 +9,12 @@
 #include "hwsim/gpu/gpu_rules.h"
 #include "lab/base/messages.h"
 #include "lab/base/text.h"
-#include "lab/catalog/overlays.h"
 #include "lab/request/image_input.h"
 
 namespace hwsim::lab {
 namespace {
 
 constexpr std::array<std::string_view, 3> kLightProfiles = {"scene", "simple", "complex"};
-
-std::string key_of(const Assignment& set) { return set.path.substr(set.path.find('.') + 1); }
 
 Engine plan_engine(const std::string& name, std::vector<Diagnostic>& problems) {
   if (const auto engine = engine_from_name(name)) return *engine;
@@ -92,7 +89,7 @@ std::vector<GpuConfig> plan_gpus(const std::vector<std::string>& names,
   std::vector<GpuConfig> gpus;
   std::vector<std::string> files;
   for (const std::string& overlay : overlays) try {
-      files.push_back(overlay_file(overlay));
+      files.push_back(from.folder().overlay_file(overlay));
     } catch (const InputError& error) {
       append(problems, error);
     }
@@ -103,20 +100,6 @@ std::vector<GpuConfig> plan_gpus(const std::vector<std::string>& names,
     }
   check_ids(gpus, problems);
   return gpus;
-}
-
-/// A choice of a view that is none of its words.
-void check_choices(View view, std::vector<Diagnostic>& problems) {
-  for (const Field& field : fields_of(view)) {
-    if (field.info.choices.empty()) continue;
-    const std::vector<std::string> words = split(field.info.choices, '|');
-    const std::string& value = *std::get<std::string*>(field.slot);
-    if (std::ranges::find(words, value) != words.end()) continue;
-    problems.push_back(problem("U003",
-                               fmt::format("`scene.{}` is `{}`, must be {} or {}", field.info.key.name, value,
-                                           fmt::join(words.begin(), words.end() - 1, ", "), words.back()),
-                               did_you_mean(value, words)));
-  }
 }
 
 /// An image has nothing to draw.
@@ -172,6 +155,15 @@ RunPlan make_plan(const Request& request, ConfigFiles& files, std::vector<Diagno
     }
   if (is_image_file(plan.view.scene)) check_image_run(plan, problems);
   return plan;
+}
+
+std::string plan_key(const RunPlan& plan, int jobs) {
+  std::string key = fmt::format("{}|{}x{}|{}|{}|{}|{}|{}", plan.view.scene, plan.view.resolution.width_px,
+                                plan.view.resolution.height_px, plan.view.point_lights, plan.view.lights,
+                                plan.reference_samples, plan.images, jobs);
+  for (const auto& technique : plan.techniques) key += "|" + algos::technique_text(technique, true);
+  for (const GpuConfig& gpu : plan.gpus) key += "|" + gpu.id;
+  return key;
 }
 
 Settings settings_of(const RunPlan& plan) {

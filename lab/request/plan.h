@@ -35,6 +35,9 @@ RunPlan make_plan(const Request& request, ConfigFiles& files, std::vector<Diagno
 /// The same, with all problems thrown as one InputError.
 RunPlan make_plan(const Request& request, ConfigFiles& files);
 
+/// All that a run of the plan with so many threads takes its time for, but the numbers of the GPUs.
+std::string plan_key(const RunPlan& plan, int jobs);
+
 /// What a plan has decided, as the settings of a request.
 Settings settings_of(const RunPlan& plan);
 

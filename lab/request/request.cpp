@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "hwsim/base/file_name.h"
 #include "hwsim/config/assign.h"
 #include "hwsim/config/settings.h"
+#include "lab/base/messages.h"
+#include "lab/base/text.h"
 #include "lab/request/image_input.h"
 #include "lab/request/run_file.h"
 
@@ -38,6 +41,15 @@ std::string key_text_of(Part part, FieldUse use) {  // a copy: slots are not for
   return text;
 }
 
+template <class Part>
+nlohmann::ordered_json json_of(Part part) {
+  nlohmann::ordered_json json;
+  for (const Field& field : collect(part))
+    std::visit([&](const auto& value) { json[std::string(field.info.key.name)] = value; },
+               value_in(field.slot));
+  return json;
+}
+
 std::vector<Key> settable(const std::vector<Field>& fields, std::string_view group) {
   std::vector<Key> keys;
   for (const Field& field : fields)
@@ -48,8 +60,6 @@ std::vector<Key> settable(const std::vector<Field>& fields, std::string_view gro
 bool is_scene_file(const std::string& scene) {
   return has_extension(scene, ".gltf") || has_extension(scene, ".glb") || is_image_file(scene);
 }
-
-std::string key_of(const Assignment& set) { return set.path.substr(set.path.find('.') + 1); }
 
 /// scene.* holds values of the view and, for a generated scene, the generator's own parameters; the generator
 /// checks the latter.
@@ -69,6 +79,45 @@ void apply_to_view(View& view, const std::vector<Assignment>& sets, std::vector<
 
 std::vector<Field> fields_of(View& view) { return collect(view); }
 std::vector<Field> fields_of(Settings& settings) { return collect(settings); }
+
+std::string key_of(const Assignment& set) { return set.path.substr(set.path.find('.') + 1); }
+
+std::optional<Diagnostic> choice_problem(const Field& field, const std::string& name, std::string code) {
+  if (field.info.choices.empty()) return std::nullopt;
+  const std::vector<std::string> words = split(field.info.choices, '|');
+  const std::string& value = *std::get<std::string*>(field.slot);
+  if (std::ranges::find(words, value) != words.end()) return std::nullopt;
+  return problem(std::move(code),
+                 fmt::format("{} is `{}`, must be {} or {}", name, value,
+                             fmt::join(words.begin(), words.end() - 1, ", "), words.back()),
+                 did_you_mean(value, words));
+}
+
+void check_choices(View view, std::vector<Diagnostic>& problems) {
+  for (const Field& field : fields_of(view))
+    if (auto wrong = choice_problem(field, fmt::format("`scene.{}`", field.info.key.name), "U003"))
+      problems.push_back(std::move(*wrong));
+}
+
+nlohmann::ordered_json to_json(const View& view) { return json_of(view); }
+nlohmann::ordered_json to_json(const Settings& settings) { return json_of(settings); }
+
+nlohmann::ordered_json field_schema(const Field& field) {
+  nlohmann::ordered_json schema;
+  schema["description"] = std::string(field.info.key.description);
+  std::visit([&](const auto& value) { schema["default"] = value; }, value_in(field.slot));
+  if (std::holds_alternative<bool*>(field.slot)) {
+    schema["type"] = "boolean";
+  } else if (std::holds_alternative<std::string*>(field.slot)) {
+    schema["type"] = "string";
+    if (!field.info.choices.empty()) schema["enum"] = split(field.info.choices, '|');
+  } else {
+    schema["type"] = std::holds_alternative<int*>(field.slot) ? "integer" : "number";
+    schema["minimum"] = field.info.key.low;
+    schema["maximum"] = field.info.key.high;
+  }
+  return schema;
+}
 
 std::string key_text(const View& view, FieldUse use) { return key_text_of(view, use); }
 std::string key_text(const Settings& settings, FieldUse use) { return key_text_of(settings, use); }

@@ -2,6 +2,8 @@
 // What is asked of the lab, as plain data with defaults. Each value is declared once, in `describe`: from
 // that line follow `--set`, run.toml both ways with its schema, and the keys of every cache. A member without
 // a declaration does not compile.
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -166,6 +168,20 @@ void describe(Visitor& v, Settings& settings) {
 std::vector<Field> fields_of(View& view);
 std::vector<Field> fields_of(Settings& settings);
 
+/// A value that is none of its declaration's words, as a problem: `name` is what the user called it. None for
+/// fields of any value.
+std::optional<Diagnostic> choice_problem(const Field& field, const std::string& name, std::string code);
+
+/// Appends the values of a view that are none of their words.
+void check_choices(View view, std::vector<Diagnostic>& problems);
+
+/// Every value by its name, in the order of declaration: what a manifest records.
+nlohmann::ordered_json to_json(const View& view);
+nlohmann::ordered_json to_json(const Settings& settings);
+
+/// JSON Schema of one value: its type, range or words, default and meaning.
+nlohmann::ordered_json field_schema(const Field& field);
+
 /// "width_px 1280 height_px 720 ...": the values on which `use` depends, for a cache's key.
 std::string key_text(const View& view, FieldUse use);
 std::string key_text(const Settings& settings, FieldUse use);
@@ -177,6 +193,9 @@ Request open_request(const std::string& scene_or_run_file);
 /// Applies settings of the groups scene, emulator and timing to the request's values, adds parameters of a
 /// generated scene to its name, and keeps all of them in request.sets. Appends what is wrong to `problems`.
 void apply(Request& request, const std::vector<Assignment>& sets, std::vector<Diagnostic>& problems);
+
+/// "l2_size_kib" of `gpu.l2_size_kib`.
+std::string key_of(const Assignment& set);
 
 /// "grass:seed=3" with further parameters or other values for those that it has.
 std::string with_parameters(const std::string& text, const std::vector<Assignment>& parameters);

@@ -10,7 +10,6 @@
 #include "hwsim/config/assign.h"
 #include "hwsim/config/toml_file.h"
 #include "lab/base/messages.h"
-#include "lab/base/text.h"
 #include "lab/request/image_input.h"
 
 namespace hwsim::lab {
@@ -50,38 +49,6 @@ Key key_in_file(const Field& field) {
   return key;
 }
 
-/// The schema of one value: its type, range or words, default and meaning.
-nlohmann::ordered_json field_schema(const Field& field) {
-  const bool whole = std::holds_alternative<int*>(field.slot);
-  nlohmann::ordered_json schema;
-  schema["description"] = std::string(field.info.key.description);
-  std::visit([&](const auto& value) { schema["default"] = value; }, value_in(field.slot));
-  if (std::holds_alternative<bool*>(field.slot)) {
-    schema["type"] = "boolean";
-  } else if (std::holds_alternative<std::string*>(field.slot)) {
-    schema["type"] = "string";
-    if (!field.info.choices.empty()) schema["enum"] = split(field.info.choices, '|');
-  } else {
-    schema["type"] = whole ? "integer" : "number";
-    schema["minimum"] = field.info.key.low;
-    schema["maximum"] = field.info.key.high;
-  }
-  return schema;
-}
-
-void check_choice(const Field& field, const SourcePlace& place, std::vector<Diagnostic>& problems) {
-  if (field.info.choices.empty()) return;
-  const std::vector<std::string> words = split(field.info.choices, '|');
-  const std::string& value = *std::get<std::string*>(field.slot);
-  if (std::ranges::find(words, value) != words.end()) return;
-  Diagnostic d = problem("C019",
-                         fmt::format("{} is `{}`, must be {} or {}", field.info.file_key, value,
-                                     fmt::join(words.begin(), words.end() - 1, ", "), words.back()),
-                         did_you_mean(value, words));
-  d.place = place;
-  problems.push_back(std::move(d));
-}
-
 void take(const TomlEntry& entry, const std::vector<Field>& fields, std::vector<Diagnostic>& problems) {
   const auto found = std::ranges::find(fields, entry.path, [](const Field& f) { return f.info.file_key; });
   if (found == fields.end()) {
@@ -97,7 +64,10 @@ void take(const TomlEntry& entry, const std::vector<Field>& fields, std::vector<
     d.place = entry.value_place;
     problems.push_back(std::move(d));
   } else if (assign(key_in_file(*found), *entry.value, entry.value_place, problems)) {
-    check_choice(*found, entry.value_place, problems);
+    if (auto wrong = choice_problem(*found, entry.path, "C019")) {
+      wrong->place = entry.value_place;
+      problems.push_back(std::move(*wrong));
+    }
   }
 }
 

@@ -88,6 +88,7 @@ Json manifest(const ManifestInput& input) {
   json["vector_targets"] = build.vector_targets;
   json["host"] = host_text();
   json["argv"] = input.arguments;
+  json["request"] = {{"view", to_json(input.plan->view)}, {"settings", to_json(settings_of(*input.plan))}};
   json["overrides"] = Json::object();
   for (const Assignment& set : input.plan->overrides) json["overrides"][set.path] = set.value;
   json["seed"] = 0;  // nothing is drawn at random outside the scene's own seed, which is part of its name
@@ -109,6 +110,30 @@ Json manifest(const ManifestInput& input) {
                                 : Json(nullptr);
   json["state"] = input.state;
   return json;
+}
+
+std::string manifest_schema_json() {
+  Json request;
+  View view;
+  Settings settings;
+  for (const auto& [part, fields] : {std::pair("view", fields_of(view)), {"settings", fields_of(settings)}}) {
+    Json properties, names = Json::array();
+    for (const Field& field : fields) {
+      properties[std::string(field.info.key.name)] = field_schema(field);
+      names.push_back(std::string(field.info.key.name));
+    }
+    request[part] = {
+        {"type", "object"}, {"required", names}, {"properties", properties}, {"additionalProperties", false}};
+  }
+  const Json schema = {
+      {"$schema", "https://json-schema.org/draft/2020-12/schema"},
+      {"title", "hwsim manifest"},
+      {"type", "object"},
+      {"required", {"schema_version", "model_version", "request", "points", "state"}},
+      {"properties",
+       {{"schema_version", {{"const", kResultSchemaVersion}}},
+        {"request", {{"type", "object"}, {"required", {"view", "settings"}}, {"properties", request}}}}}};
+  return schema.dump(2) + "\n";
 }
 
 }  // namespace hwsim::lab

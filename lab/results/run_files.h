@@ -23,6 +23,10 @@ struct ManifestInput {
 };
 nlohmann::ordered_json manifest(const ManifestInput& input);
 
+/// JSON Schema (draft 2020-12) of a manifest.json: of the request's values all, of the rest what every
+/// manifest has.
+std::string manifest_schema_json();
+
 /// "msaa4x@gtx980": a point's folder in a run of several, without characters that file systems or shells
 /// mind.
 std::string point_folder(const PointResult& point);

@@ -7,7 +7,6 @@
 
 #include "algos/base/reference_frame.h"
 #include "lab/base/files.h"
-#include "lab/store/cache.h"
 #include "pipeline/image/image_io.h"
 
 namespace hwsim::lab {
@@ -21,9 +20,10 @@ std::string reference_key(const SceneView& scene, int samples) {
 
 }  // namespace
 
-ReferenceImage make_reference(SceneView& scene, int samples, int jobs, const ProgressFunction& progress) {
+ReferenceImage make_reference(SceneView& scene, int samples, int jobs, const Cache& cache,
+                              const ProgressFunction& progress) {
   const auto start = std::chrono::steady_clock::now();
-  const std::filesystem::path folder = cache_directory(CacheFolder::references);
+  const std::filesystem::path folder = cache.directory(CacheFolder::references);
   const std::string path = (folder / (hash_hex(reference_key(scene, samples)) + ".exr")).string();
   std::error_code error;
   ReferenceImage result;

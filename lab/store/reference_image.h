@@ -13,6 +13,7 @@ struct ReferenceImage {
 };
 
 /// Ray-traces the view, or takes it from the cache.
-ReferenceImage make_reference(SceneView& scene, int samples, int jobs, const ProgressFunction& progress);
+ReferenceImage make_reference(SceneView& scene, int samples, int jobs, const Cache& cache,
+                              const ProgressFunction& progress);
 
 }  // namespace hwsim::lab

@@ -13,7 +13,6 @@
 #include "hwsim/base/file_name.h"
 #include "lab/base/messages.h"
 #include "lab/request/image_input.h"
-#include "lab/store/cache.h"
 #include "pipeline/open/scene_source.h"
 
 namespace hwsim::lab {
@@ -114,12 +113,12 @@ std::optional<SceneSummary> decode(std::span<const std::uint8_t> bytes) {
 }
 
 /// A generated scene's file follows from its name and the generator's sources; a file is itself.
-std::string summary_path(const View& view) {
+std::string summary_path(const View& view, const Cache& cache) {
   const std::string& scene = view.scene;
   const bool is_file = has_extension(scene, ".gltf") || has_extension(scene, ".glb");
   std::error_code error;
   const std::string name = is_file ? fs::absolute(scene, error).lexically_normal().string() : scene;
-  return cache_path(CacheFolder::scenes,
+  return cache.path(CacheFolder::scenes,
                     fmt::format("{}|{}|{}|{}", algos::source_digest(), name, scene, view.exposure),
                     ".summary");
 }
@@ -156,12 +155,13 @@ std::optional<SceneSummary> remembered_summary(const std::string& path, Observer
 
 }  // namespace
 
-SceneView::SceneView(View plan, Observer& observer) : plan_(std::move(plan)) {
+SceneView::SceneView(View plan, const Cache& cache, Observer& observer)
+    : plan_(std::move(plan)), cache_(cache) {
   if (is_image_file(plan_.scene)) {
     load_image();
     return;
   }
-  const std::string path = summary_path(plan_);
+  const std::string path = summary_path(plan_, cache);
   if (auto known = remembered_summary(path, observer)) {
     summary_ = std::move(*known);
   } else {
@@ -173,7 +173,7 @@ SceneView::SceneView(View plan, Observer& observer) : plan_(std::move(plan)) {
       stamps.push_back(stamp_of(file));
       settled = settled && stamps.back().changed_ns < start_ns - kSettledNs;
     }
-    if (settled) write_cached(path, encode(summary_, stamps), observer);
+    if (settled) cache.write(path, encode(summary_, stamps), observer);
   }
   camera_ = find_camera(summary_, plan_.camera);
   for (const Diagnostic& note : summary_.notes) observer.report(note);
@@ -181,7 +181,7 @@ SceneView::SceneView(View plan, Observer& observer) : plan_(std::move(plan)) {
 
 void SceneView::load() {
   auto scene = std::make_shared<const pipeline::Scene>(
-      pipeline::open_scene(plan_.scene, cache_directory(CacheFolder::scenes), load_options(plan_)));
+      pipeline::open_scene(plan_.scene, cache_.directory(CacheFolder::scenes), load_options(plan_)));
   summary_ = {scene->name, scene->content_hash, {}, scene->notes};
   for (const pipeline::Camera& camera : scene->cameras) summary_.cameras.push_back(camera.name);
   scene_ = std::move(scene);

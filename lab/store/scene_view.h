@@ -9,6 +9,7 @@
 #include "algos/techniques.h"
 #include "lab/base/observer.h"
 #include "lab/request/plan.h"
+#include "lab/store/cache.h"
 #include "pipeline/image/image_io.h"
 
 namespace hwsim::lab {
@@ -22,8 +23,8 @@ struct SceneSummary {
 
 class SceneView {
  public:
-  /// Finds the camera by name or index. Throws InputError.
-  SceneView(View plan, Observer& observer);
+  /// Finds the camera by name or index. `cache` must outlive the view. Throws InputError.
+  SceneView(View plan, const Cache& cache, Observer& observer);
 
   const View& plan() const { return plan_; }
   const SceneSummary& summary() const { return summary_; }
@@ -40,6 +41,7 @@ class SceneView {
   void load_image();
 
   View plan_;
+  const Cache& cache_;
   SceneSummary summary_;
   int camera_ = 0;
   std::shared_ptr<const pipeline::Scene> scene_;

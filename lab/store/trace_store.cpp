@@ -10,7 +10,6 @@
 #include "hwsim/base/byte_codec.h"
 #include "hwsim/trace/trace_file.h"
 #include "lab/request/request.h"
-#include "lab/store/cache.h"
 
 namespace hwsim::lab {
 namespace {
@@ -101,10 +100,14 @@ std::string key_of(const std::string& work) {
   return fmt::format("{}|{:016x}|{}", algos::source_digest(), trace_version(), work);
 }
 
-std::string frame_path(const std::string& key) { return cache_path(CacheFolder::traces, key, ".trace"); }
-std::string image_path(const std::string& key) { return cache_path(CacheFolder::traces, key, ".image"); }
-
 }  // namespace
+
+std::string TraceStore::frame_path(const std::string& key) const {
+  return cache_.path(CacheFolder::traces, key, ".trace");
+}
+std::string TraceStore::image_path(const std::string& key) const {
+  return cache_.path(CacheFolder::traces, key, ".image");
+}
 
 std::string TraceStore::work_text(const SceneView& scene, const algos::TechniqueChoice& technique,
                                   const GpuConfig& gpu, const FrameNeeds& needs) {
@@ -123,9 +126,9 @@ EmulatedFrame TraceStore::frame(SceneView& scene, const algos::TechniqueChoice& 
   if (!result.emulation) {
     result = {emulate(scene, technique, gpu, needs, progress), false};
     key = key_of(work_text(scene, technique, gpu, needs));  // the file may have changed before it was loaded
-    if (options_.disk) write_cached(frame_path(key), encode_frame(key, *result.emulation), observer_);
+    if (options_.disk) cache_.write(frame_path(key), encode_frame(key, *result.emulation), observer_);
     if (options_.disk && needs.image)
-      write_cached(image_path(key), encode_images(key, *result.emulation), observer_);
+      cache_.write(image_path(key), encode_images(key, *result.emulation), observer_);
   }
   keep(key, result.emulation);
   return result;

@@ -29,7 +29,9 @@ class TraceStore {
     int jobs = 1;
     bool disk = true;  ///< false: neither reads nor writes cached traces
   };
-  TraceStore(const Options& options, Observer& observer) : options_(options), observer_(observer) {}
+  /// Both must outlive the store.
+  TraceStore(const Options& options, const Cache& cache, Observer& observer)
+      : options_(options), cache_(cache), observer_(observer) {}
 
   /// Only features and limits of `gpu` matter. Throws InputError where the technique cannot run on it.
   EmulatedFrame frame(SceneView& scene, const algos::TechniqueChoice& technique, const GpuConfig& gpu,
@@ -53,7 +55,11 @@ class TraceStore {
                                                      const ProgressFunction& progress);
   void keep(const std::string& key, std::shared_ptr<const pipeline::Emulation> emulation);
 
+  std::string frame_path(const std::string& key) const;
+  std::string image_path(const std::string& key) const;
+
   Options options_;
+  const Cache& cache_;
   Observer& observer_;
   std::vector<Kept> kept_;  ///< the newest last
 };

@@ -61,7 +61,13 @@ Table pass_comparison(const Comparison& comparison);
 /// One row a difference, pass and counter that changed.
 Table counter_comparison(const Comparison& comparison);
 
+/// Whether a name is one of results that were written: a folder, or a result.json.
+bool is_result(const std::string& name);
+
 /// Results in a folder that `run` wrote: one, or one for each point. Throws InputError U020.
 std::vector<LabeledResult> read_results(const std::string& path);
+
+/// Compares all results in the folders with the first. Throws InputError U002 when there is one alone.
+Comparison compare_results(const std::vector<std::string>& paths);
 
 }  // namespace hwsim::lab

@@ -3,27 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 
-#include "lab/base/files.h"
 #include "lab/base/messages.h"
 #include "lab/point/simulate.h"
 
 namespace hwsim::lab {
 namespace {
 
-namespace fs = std::filesystem;
 using cost_models::Experiment;
 using cost_models::RowUse;
 using cost_models::RunSpec;
 
-std::string published_directory() { return (fs::path(config_directory()) / "published").string(); }
-
 /// Traces of runs, as `run` would make them: from the cache where it has them.
 class RunTraces {
  public:
-  RunTraces(int jobs, Observer& observer) : store_({.jobs = jobs, .disk = true}, observer) {}
+  RunTraces(int jobs, const Cache& cache, Observer& observer)
+      : cache_(cache), store_({.jobs = jobs, .disk = true}, cache, observer) {}
 
   std::shared_ptr<const WorkTrace> trace(const RunSpec& spec, const GpuConfig& gpu) {
     View view;
@@ -35,7 +31,7 @@ class RunTraces {
     view.shadows = spec.shadows;
     view.lights = spec.lights;
     const algos::TechniqueChoice technique = algos::parse_technique(spec.technique);
-    if (!scene_ || !(scene_->plan() == view)) scene_ = std::make_unique<SceneView>(view, silent_);
+    if (!scene_ || !(scene_->plan() == view)) scene_ = std::make_unique<SceneView>(view, cache_, silent_);
     std::shared_ptr<const WorkTrace>& known =
         traces_[TraceStore::work_text(*scene_, technique, gpu, FrameNeeds{})];
     if (!known)  // a copy: without the image that a fresh emulation carries
@@ -45,6 +41,7 @@ class RunTraces {
   }
 
  private:
+  const Cache& cache_;
   TraceStore store_;
   Observer silent_;  // the loader's notes on stand-in scenes
   std::unique_ptr<SceneView> scene_;
@@ -81,37 +78,40 @@ void check_papers(const std::vector<std::string>& papers) {
                  did_you_mean(paper, known));
 }
 
-std::vector<cost_models::Cell> published_cells(const std::vector<std::string>& papers) {
+std::vector<cost_models::Cell> published_cells(const std::vector<std::string>& papers,
+                                               const ConfigFolder& folder) {
   check_papers(papers);
   std::vector<cost_models::Cell> cells =
-      cost_models::map_rows(cost_models::load_published(published_directory()), published_directory());
+      cost_models::map_rows(cost_models::load_published(folder.published()), folder.published());
   std::erase_if(cells, [&](const cost_models::Cell& cell) { return !in_papers(cell, papers); });
   return cells;
 }
 
-cost_models::TraceSource emulated_traces(int jobs, Observer& observer) {
-  return [traces = std::make_shared<RunTraces>(jobs, observer)](const RunSpec& spec, const GpuConfig& gpu) {
-    return traces->trace(spec, gpu);
-  };
+cost_models::TraceSource emulated_traces(int jobs, const Cache& cache, Observer& observer) {
+  return [traces = std::make_shared<RunTraces>(jobs, cache, observer)](
+             const RunSpec& spec, const GpuConfig& gpu) { return traces->trace(spec, gpu); };
 }
 
 Experiment load_experiment(std::vector<cost_models::Cell> cells, const cost_models::TraceSource& traces,
-                           Observer& observer) {
+                           const ConfigFolder& folder, Observer& observer) {
   std::map<std::string, GpuConfig> gpus;
-  for (const cost_models::Cell& cell : published_cells({}))  // parameters name GPUs of every paper
+  for (const cost_models::Cell& cell : published_cells({}, folder))  // parameters name GPUs of every paper
     if (cell.has_run && !gpus.contains(cell.run.gpu))
-      gpus.emplace(cell.run.gpu, load_gpu(cell.run.gpu, {}, {}, gpu_directory()));
+      gpus.emplace(cell.run.gpu, load_gpu(cell.run.gpu, {}, {}, folder.gpus()));
   Experiment experiment = cost_models::make_experiment(
-      std::move(cells), gpus, (fs::path(config_directory()) / "calibration" / "parameters.csv").string(),
-      traces, [&](std::size_t done, std::size_t all, const std::string& what) {
+      std::move(cells), gpus, folder.calibration() + "/parameters.csv", traces,
+      [&](std::size_t done, std::size_t all, const std::string& what) {
         observer.progress(all == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(all), what);
       });
   observer.progress_ended();
   return experiment;
 }
 
-Experiment load_experiment(std::vector<cost_models::Cell> cells, int jobs, Observer& observer) {
-  return load_experiment(std::move(cells), emulated_traces(jobs, observer), observer);
+Experiment load_experiment(const std::vector<std::string>& papers, Session& session) {
+  const ConfigFolder& folder = session.files().folder();
+  return load_experiment(published_cells(papers, folder),
+                         emulated_traces(session.jobs(), session.cache(), session.observer()), folder,
+                         session.observer());
 }
 
 Table plan_table(const std::vector<cost_models::Cell>& cells) {

@@ -6,6 +6,7 @@
 #include "cost_models/experiment.h"
 #include "lab/base/observer.h"
 #include "lab/base/table.h"
+#include "lab/point/session.h"
 
 namespace hwsim::lab {
 
@@ -15,18 +16,21 @@ bool in_papers(const cost_models::Cell& cell, const std::vector<std::string>& pa
 /// Names of papers that have rows; throws InputError U003 for others.
 void check_papers(const std::vector<std::string>& papers);
 
-/// Rows of the papers (all when empty) with what is done with them, from configs/published.
-std::vector<cost_models::Cell> published_cells(const std::vector<std::string>& papers);
+/// Rows of the papers (all when empty) with what is done with them, from the published tables of `folder`.
+std::vector<cost_models::Cell> published_cells(const std::vector<std::string>& papers,
+                                               const ConfigFolder& folder);
 
-/// Gives a run the trace that `run` would make, from the cache where it is there. `observer` must outlive it.
-cost_models::TraceSource emulated_traces(int jobs, Observer& observer);
+/// Gives a run the trace that `run` would make, from the cache where it is there. `cache` and `observer` must
+/// outlive it.
+cost_models::TraceSource emulated_traces(int jobs, const Cache& cache, Observer& observer);
 
 /// The cells with what predicts them. Rows that cannot run are in `not_run`.
 cost_models::Experiment load_experiment(std::vector<cost_models::Cell> cells,
-                                        const cost_models::TraceSource& traces, Observer& observer);
+                                        const cost_models::TraceSource& traces, const ConfigFolder& folder,
+                                        Observer& observer);
 
-/// The same from emulated traces.
-cost_models::Experiment load_experiment(std::vector<cost_models::Cell> cells, int jobs, Observer& observer);
+/// The same for rows of the papers, from emulated traces.
+cost_models::Experiment load_experiment(const std::vector<std::string>& papers, Session& session);
 
 /// Rows and their runs, without running anything.
 Table plan_table(const std::vector<cost_models::Cell>& cells);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "hwsim/base/file_name.h"
 #include "lab/base/files.h"
 #include "lab/base/messages.h"
 #include "lab/studies/comparison.h"
@@ -36,6 +37,21 @@ std::vector<LabeledResult> read_results(const std::string& path) {
   std::vector<LabeledResult> results;
   for (const fs::path& file : files) results.push_back(read_result(file));
   return results;
+}
+
+bool is_result(const std::string& name) {
+  std::error_code error;
+  return fs::is_directory(name, error) || has_extension(name, ".json");
+}
+
+Comparison compare_results(const std::vector<std::string>& paths) {
+  std::vector<LabeledResult> results;
+  for (const std::string& path : paths)
+    for (LabeledResult& result : read_results(path)) results.push_back(std::move(result));
+  if (results.size() < 2)
+    fail_usage("U002", "there is nothing to compare `" + paths.front() + "` with", "",
+               "give the folders of two runs");
+  return compare(results);
 }
 
 }  // namespace hwsim::lab

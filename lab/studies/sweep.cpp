@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "hwsim/base/content_hash.h"
@@ -151,6 +152,23 @@ Table planned_table(const std::vector<PlannedPoint>& points) {
     for (const Assignment& set : p.settings) row.push_back(set.value);
   }
   return table;
+}
+
+nlohmann::ordered_json to_json(const SweepSummary& summary) {
+  return {{"schema_version", kResultSchemaVersion},
+          {"database", summary.database},
+          {"done", summary.done},
+          {"failed", summary.failed},
+          {"left", summary.left},
+          {"points", to_json(summary.points)}};
+}
+
+SweepSummary sweep_summary_from_json(const nlohmann::ordered_json& json) {
+  return {.database = json.at("database").get<std::string>(),
+          .done = json.at("done").get<std::size_t>(),
+          .failed = json.at("failed").get<std::size_t>(),
+          .left = json.at("left").get<std::size_t>(),
+          .points = table_from_json(json.at("points"))};
 }
 
 SweepSummary run_sweep(const std::vector<PlannedPoint>& points, const SweepJob& job, Session& session) {

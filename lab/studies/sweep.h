@@ -2,6 +2,7 @@
 // A sweep: all points are decided, and all mistakes reported, before the first one runs; then each result
 // goes into the database as it comes.
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,10 @@ struct SweepSummary {
   std::size_t left = 0;  ///< waiting, interrupted, or running: in another process, or in one that was killed
   Table points{};        ///< every point of the database
 };
+
+nlohmann::ordered_json to_json(const SweepSummary& summary);
+/// Throws nlohmann::json::exception where a field is missing or of another type.
+SweepSummary sweep_summary_from_json(const nlohmann::ordered_json& json);
 
 /// Runs what is not done. Without points it merges and reads the database only; without databases to merge it
 /// opens it read-only. A point that cannot

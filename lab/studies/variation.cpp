@@ -1,6 +1,28 @@
 #include "lab/studies/variation.h"
 
+#include <fmt/format.h>
+
+#include "lab/base/text.h"
+
 namespace hwsim::lab {
+namespace {
+
+Variation labeled(const std::vector<std::string>& overlays, const std::vector<Assignment>& sets) {
+  std::vector<std::string> words = overlays;
+  for (const Assignment& set : sets) words.push_back(set.path + "=" + set.value);
+  return {fmt::format("{}", fmt::join(words, " ")), overlays, sets};
+}
+
+}  // namespace
+
+std::vector<Variation> variations_of(const Trials& trials) {
+  std::vector<Variation> variations;
+  if (!trials.sets.empty() || !trials.overlays.empty())
+    variations.push_back(labeled(trials.overlays, trials.sets));
+  for (const std::string& what_if : trials.what_ifs) variations.push_back({what_if, split(what_if, '+'), {}});
+  for (const std::vector<Assignment>& point : trials.points) variations.push_back(labeled({}, point));
+  return variations;
+}
 
 Request varied(const Request& base, const Variation& variation, std::vector<Diagnostic>& problems) {
   Request request = base;

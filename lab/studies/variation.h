@@ -13,6 +13,17 @@ struct Variation {
   std::vector<Assignment> sets;       ///< act behind those of the request
 };
 
+/// What is to be tried, as words say it.
+struct Trials {
+  std::vector<std::string> overlays{};  ///< together with `sets` one variation
+  std::vector<Assignment> sets{};
+  std::vector<std::string> what_ifs{};            ///< overlays, each a variation; "a+b" lays both
+  std::vector<std::vector<Assignment>> points{};  ///< each a variation
+};
+
+/// Labels are the words.
+std::vector<Variation> variations_of(const Trials& trials);
+
 /// The request with a variation. Appends what is wrong with the settings to `problems`.
 Request varied(const Request& base, const Variation& variation, std::vector<Diagnostic>& problems);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <system_error>
@@ -165,22 +164,6 @@ Scene open_scene(const std::string& name_or_path, const std::string& cache_direc
   Scene scene = open_generated(name_or_path, cache_directory, options);
   scene.name = name_or_path;
   return scene;
-}
-
-std::string default_cache_directory() {
-  const auto variable = [](const char* name) -> std::string {
-    const char* value = std::getenv(name);
-    return value ? value : "";
-  };
-  namespace fs = std::filesystem;
-  if (const std::string own = variable("HWSIM_CACHE"); !own.empty()) return own;
-  if (const std::string base = variable("XDG_CACHE_HOME"); !base.empty())
-    return (fs::path(base) / "hwsim").string();
-  if (const std::string home = variable("HOME"); !home.empty())
-    return (fs::path(home) / ".cache" / "hwsim").string();
-  std::error_code error;
-  const fs::path temporary = fs::temp_directory_path(error);
-  return ((error ? fs::path(".") : temporary) / "hwsim-cache").string();
 }
 
 }  // namespace hwsim::pipeline

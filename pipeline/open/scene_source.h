@@ -23,8 +23,4 @@ void write_generated_scene(const std::string& name, const std::map<std::string, 
 Scene open_scene(const std::string& name_or_path, const std::string& cache_directory,
                  const SceneLoadOptions& options = {});
 
-/// $HWSIM_CACHE, else $XDG_CACHE_HOME/hwsim, else ~/.cache/hwsim, else a folder of the system's temporary
-/// directory.
-std::string default_cache_directory();
-
 }  // namespace hwsim::pipeline

@@ -7,7 +7,6 @@
 #include <fstream>
 
 #include "hwsim/base/diagnostics.h"
-#include "lab/base/files.h"
 
 namespace hwsim::lab {
 namespace {
@@ -18,8 +17,8 @@ TEST(ConfigFiles, GiveWhatLoadingAloneGives) {
   ConfigFiles files;
   const std::vector<Assignment> sets = {{"gpu.l2_size_kib", "1024"}, {"scene.shadows", "false"}};
   for (const char* name : {"gtx980", "hd7650m"}) {
-    const GpuConfig plain = load_gpu(name, {}, {}, gpu_directory());
-    const GpuConfig changed = load_gpu(name, {}, sets, gpu_directory());
+    const GpuConfig plain = load_gpu(name, {}, {}, ConfigFolder().gpus());
+    const GpuConfig changed = load_gpu(name, {}, sets, ConfigFolder().gpus());
     EXPECT_EQ(show(files.gpu(name, {}, sets, false), true), show(changed, true));
     EXPECT_EQ(show(files.gpu(name, {}, {}, false), true), show(plain, true))
         << "settings of one plan do not reach the next";

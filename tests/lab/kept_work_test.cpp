@@ -2,7 +2,6 @@
 // anew.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
 
@@ -32,10 +31,10 @@ std::vector<std::uint8_t> comparable(WorkTrace trace) {
 }
 
 TEST(KeptWork, IsWhatThisVersionEmulates) {
-  setenv("HWSIM_CACHE", (hwsim::test::binary_dir() + "/test-cache").c_str(), 1);
+  const Cache cache(hwsim::test::binary_dir() + "/test-cache");
   const KeptTraces kept = kept_traces();
   Observer silent;
-  const cost_models::TraceSource traces = emulated_traces(2, silent);
+  const cost_models::TraceSource traces = emulated_traces(2, cache, silent);
   std::size_t compared = 0;
   for (const char* run_begins :
        {"sbaa_merge:n=2,msaa=8,centroid=off of dragon", "agaa:c=2,msaa=8,diffuse_filter=folded of metal",

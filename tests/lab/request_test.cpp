@@ -9,7 +9,9 @@
 #include <set>
 #include <sstream>
 
+#include "hwsim/config/assign.h"
 #include "lab/request/run_file.h"
+#include "lab/results/run_files.h"
 #include "lab/store/trace_store.h"
 #include "pipeline/image/image_io.h"
 
@@ -35,6 +37,22 @@ void change(const Field& field) {
     text = "none";
   else
     text = "1";
+}
+
+using Json = nlohmann::ordered_json;
+
+/// Every value of a request, with the part of the manifest that it stands in.
+std::vector<std::pair<const char*, Field>> every_field(Request& request) {
+  std::vector<std::pair<const char*, Field>> all;
+  for (const Field& field : fields_of(request.view)) all.emplace_back("view", field);
+  for (const Field& field : fields_of(request.settings)) all.emplace_back("settings", field);
+  return all;
+}
+
+Json json_of(const Field& field) {
+  Json json;
+  std::visit([&](const auto& value) { json = value; }, value_in(field.slot));
+  return json;
 }
 
 Names names_of(const std::vector<Field>& fields, bool (*wanted)(const FieldInfo&)) {
@@ -72,11 +90,12 @@ TEST(Request, EveryValueOfAViewChangesTheKeysOfTheCaches) {
 TEST(Request, TheKeyOfATraceHoldsEveryValueOfItsView) {
   const std::string image = (fs::path(::testing::TempDir()) / "hwsim_request.png").string();
   pipeline::write_image(pipeline::Image(8, 8), image);
+  const Cache cache{""};
   Observer silent;
   const algos::TechniqueChoice technique = algos::parse_technique("fxaa");
   const GpuConfig gpu;
   const auto work = [&](const View& view, const FrameNeeds& needs = {}) {
-    return TraceStore::work_text(SceneView(view, silent), technique, gpu, needs);
+    return TraceStore::work_text(SceneView(view, cache, silent), technique, gpu, needs);
   };
   View plain;
   plain.scene = image;
@@ -116,22 +135,108 @@ class RunFile : public ::testing::Test {
 
 TEST_F(RunFile, EveryValueReadsBack) {
   Request plain = request();
-  const auto fields = [](Request& r) {
-    std::vector<Field> all = fields_of(r.view);
-    for (const Field& field : fields_of(r.settings)) all.push_back(field);
-    return all;
-  };
-  const std::size_t count = fields(plain).size();
+  const std::size_t count = every_field(plain).size();
   for (std::size_t i = 0; i < count; ++i) {
     Request changed = request();
-    const Field field = fields(changed)[i];
-    if (field.info.key.name == "images" || field.info.key.name == "memory_mib")
-      continue;  // what is written beside the numbers is asked for each time
+    const Field field = every_field(changed)[i].second;
+    if (field.info.file_key.empty()) continue;  // what is written beside the numbers is asked for each time
     change(field);
     const Request back = there_and_back(changed);
     EXPECT_EQ(back.view, changed.view) << field.info.key.name;
     EXPECT_EQ(back.settings, changed.settings) << field.info.key.name;
   }
+}
+
+// No field is named here: whoever declares one has it in all of these places, or fails.
+class OneDeclaration : public RunFile {
+ protected:
+  /// Calls `check` with each field, changed alone in its request.
+  template <class Check>
+  void for_each_changed(const Check& check) {
+    Request plain = request();
+    const std::size_t count = every_field(plain).size();
+    EXPECT_GT(count, 10u);
+    for (std::size_t i = 0; i < count; ++i) {
+      Request changed = request();
+      const auto [part, field] = every_field(changed)[i];
+      SCOPED_TRACE(std::string(field.info.key.name));
+      EXPECT_EQ(json_of(field), json_of(every_field(plain)[i].second));
+      change(field);
+      EXPECT_NE(json_of(field), json_of(every_field(plain)[i].second));
+      check(part, field, changed);
+    }
+  }
+};
+
+TEST_F(OneDeclaration, TheManifestRecordsEveryValue) {
+  for_each_changed([&](const char* part, const Field& field, const Request& changed) {
+    const RunPlan plan = make_plan(changed, files_);
+    const Json recorded = manifest({.arguments = {}, .plan = &plan, .state = "done"}).at("request");
+    EXPECT_EQ(recorded.at(part).at(std::string(field.info.key.name)), json_of(field));
+  });
+}
+
+TEST_F(OneDeclaration, TheManifestsSchemaDescribesEveryValue) {
+  const Json schema = Json::parse(manifest_schema_json()).at("properties").at("request").at("properties");
+  std::size_t described = 0;
+  for_each_changed([&](const char* part, const Field& field, const Request&) {
+    const Json& property = schema.at(part).at("properties").at(std::string(field.info.key.name));
+    ++described;
+    EXPECT_EQ(property.at("description").get<std::string>(), field.info.key.description);
+    const Json value = json_of(field);
+    EXPECT_EQ(property.at("type"), value.is_boolean()          ? "boolean"
+                                   : value.is_string()         ? "string"
+                                   : value.is_number_integer() ? "integer"
+                                                               : "number");
+    if (value.is_number()) {
+      EXPECT_GE(value.get<double>(), property.at("minimum").get<double>());
+      EXPECT_LE(value.get<double>(), property.at("maximum").get<double>());
+    }
+    EXPECT_EQ(property.contains("enum"), !field.info.choices.empty());
+  });
+  EXPECT_EQ(schema.at("view").at("properties").size() + schema.at("settings").at("properties").size(),
+            described)
+      << "the schema describes what no request has";
+}
+
+TEST_F(OneDeclaration, RunFilesHoldTheValuesThatHaveAKeyThereAndTheirSchemaTheSame) {
+  const Json schema = Json::parse(run_schema_json()).at("properties");
+  for_each_changed([&](const char*, const Field& field, const Request& changed) {
+    const Request back = there_and_back(changed);
+    if (field.info.file_key.empty()) {
+      EXPECT_FALSE(schema.contains(std::string(field.info.key.name)));
+      return;
+    }
+    EXPECT_EQ(back.view, changed.view);
+    EXPECT_EQ(back.settings, changed.settings);
+    EXPECT_EQ(schema.at(std::string(field.info.file_key)).at("description").get<std::string>(),
+              field.info.key.description);
+  });
+}
+
+TEST_F(OneDeclaration, SetReachesTheValuesThatHaveAGroup) {
+  for_each_changed([&](const char*, const Field& field, Request& changed) {
+    if (field.info.group.empty()) return;
+    const Json wanted = json_of(field);
+    Request set = request();
+    std::vector<Diagnostic> problems;
+    const std::string path = std::string(field.info.group) + "." + std::string(field.info.key.name);
+    apply(set, {{path, wanted.is_string() ? wanted.get<std::string>() : wanted.dump()}}, problems);
+    EXPECT_TRUE(problems.empty()) << problems.front().message;
+    EXPECT_EQ(set.view, changed.view);
+    EXPECT_EQ(set.settings, changed.settings);
+  });
+}
+
+TEST_F(OneDeclaration, CachesKeysChangeWithTheValuesThatSaySo) {
+  const Request plain = request();
+  for_each_changed([&](const char*, const Field& field, const Request& changed) {
+    for (const FieldUse use : {kWork, kReference})
+      EXPECT_EQ(key_text(changed.view, use) + key_text(changed.settings, use) !=
+                    key_text(plain.view, use) + key_text(plain.settings, use),
+                (field.info.uses & use) != 0)
+          << use;
+  });
 }
 
 TEST_F(RunFile, SchemaNamesEveryKeyThatIsWritten) {

@@ -23,7 +23,6 @@ Workbench::Workbench() {
   if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
   folder_ = name;
   std::ofstream(folder_ / "triangle.gltf") << kTriangle;
-  setenv("HWSIM_CACHE", path("cache").c_str(), 1);
 }
 
 Workbench::~Workbench() {

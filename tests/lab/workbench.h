@@ -9,7 +9,7 @@
 
 namespace hwsim::lab::test {
 
-/// A temporary folder that holds triangle.gltf; the cache lies in it as long as it lives. Removed at the end.
+/// A temporary folder that holds triangle.gltf. Removed at the end.
 class Workbench {
  public:
   Workbench();

@@ -70,6 +70,16 @@ TEST(Sources, CommentsNameTheirSubject) {
   }
 }
 
+// Two labs in one process, or a lab in a server, must not change by what some shell exported.
+TEST(Sources, NothingInALabReadsTheEnvironment) {
+  std::set<std::string> readers;
+  for (const fs::path& file : project_files({".h", ".cpp"}))
+    for (const TextLine& line : lines_of(file))
+      if (line.text.find("getenv(") != std::string::npos && file.generic_string().rfind("lab/", 0) == 0)
+        readers.insert(file.generic_string());
+  EXPECT_EQ(readers, std::set<std::string>{"lab/environment.cpp"}) << "which only programs call";
+}
+
 std::set<std::string> declared_tests() {
   std::set<std::string> tests;
   const std::regex declared(R"rx(TEST(?:_P|_F)?\((\w+), *(\w+).*)rx");

@@ -7,7 +7,8 @@ int main(int argc, char** argv) {
   if (argc != 2) return 2;
   const hwsim::lab::Request request{.view = {.scene = argv[1], .resolution = {64, 48}},
                                     .techniques = {"msaa4x", "fxaa"}};
-  const hwsim::lab::Ranking ranking = hwsim::lab::Lab().rank(request, "aa_ms<=1");
+  hwsim::lab::Lab lab(hwsim::lab::options_of_environment());
+  const hwsim::lab::Ranking ranking = lab.rank(request, "aa_ms<=1");
   for (const auto& t : ranking.techniques)
     std::printf("%s: %.3f ms, FLIP %.4f, %s\n", t.technique.c_str(), t.frame_ms, t.flip_mean,
                 t.verdict.c_str());

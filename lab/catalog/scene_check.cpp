@@ -1,0 +1,83 @@
+#include "lab/catalog/scene_check.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "hwsim/base/file_name.h"
+#include "pipeline/open/scene_check.h"
+#include "pipeline/open/scene_source.h"
+
+namespace hwsim::lab {
+namespace {
+
+std::vector<Cell> scene_row(const pipeline::Scene& scene) {
+  const pipeline::SceneStats s = pipeline::stats(scene);
+  const glm::vec3 size = s.bounds_max - s.bounds_min;
+  return {scene.name,
+          s.drawn_triangles,
+          s.stored_triangles,
+          s.vertices,
+          std::uint64_t{scene.meshes.size()},
+          std::uint64_t{scene.instances.size()},
+          std::uint64_t{scene.materials.size()},
+          std::uint64_t{scene.textures.size()},
+          Real{static_cast<double>(s.texture_bytes) / (1024.0 * 1024.0), 1},
+          s.drawn_mask_triangles,
+          s.drawn_blend_triangles,
+          std::uint64_t{scene.lights.size()},
+          std::uint64_t{scene.cameras.size()},
+          fmt::format("{:.3g} x {:.3g} x {:.3g}", size.x, size.y, size.z),
+          std::uint64_t{scene.notes.size()}};
+}
+
+std::vector<Column> scene_columns() {
+  return {{"scene", "scene"},
+          {"drawn_triangles", "drawn triangles", true},
+          {"stored_triangles", "stored triangles", true},
+          {"vertices", "vertices", true},
+          {"meshes", "meshes", true},
+          {"instances", "instances", true},
+          {"materials", "materials", true},
+          {"textures", "textures", true},
+          {"texture_mib", "texture MiB", true},
+          {"drawn_mask_triangles", "alpha-tested triangles", true},
+          {"drawn_blend_triangles", "blended triangles", true},
+          {"lights", "lights", true},
+          {"cameras", "cameras", true},
+          {"size_m", "size, m", true},
+          {"notes", "notes", true}};
+}
+
+bool is_file(const std::string& name) { return has_extension(name, ".gltf") || has_extension(name, ".glb"); }
+
+/// What there is to say about a scene that loads; of a file, what it uses too.
+std::vector<Diagnostic> findings(const std::string& name, const pipeline::Scene& scene) {
+  return is_file(name) ? pipeline::check_gltf(name) : scene.notes;
+}
+
+}  // namespace
+
+CheckedScenes check_scenes(const std::vector<std::string>& names, const std::string& folder) {
+  CheckedScenes checked{.table = {scene_columns(), {}}};
+  for (const std::string& name : names) try {
+      const pipeline::Scene scene = pipeline::open_scene(name, folder);
+      std::vector<Diagnostic> notes = findings(name, scene);
+      checked.table.rows.push_back(scene_row(scene));
+      checked.notes.push_back(std::move(notes));
+    } catch (const InputError& error) {
+      checked.problems.insert(checked.problems.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+  return checked;
+}
+
+nlohmann::ordered_json to_json(const CheckedScenes& scenes) {
+  nlohmann::ordered_json json = to_json(scenes.table);
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    json[i]["notes"] = nlohmann::ordered_json::array();
+    for (const Diagnostic& note : scenes.notes[i]) json[i]["notes"].push_back(note.message);
+  }
+  return json;
+}
+
+}  // namespace hwsim::lab

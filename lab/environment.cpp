@@ -1,0 +1,49 @@
+#include "lab/environment.h"
+
+#include <charconv>
+#include <cstdlib>
+#include <filesystem>
+
+#include "lab/base/messages.h"
+
+namespace hwsim::lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+std::string cache_folder() {
+  if (std::string own = variable("HWSIM_CACHE"); !own.empty()) return own;
+  if (const std::string base = variable("XDG_CACHE_HOME"); !base.empty())
+    return (fs::path(base) / "hwsim").string();
+  if (const std::string home = variable("HOME"); !home.empty())
+    return (fs::path(home) / ".cache" / "hwsim").string();
+  std::error_code error;
+  const fs::path temporary = fs::temp_directory_path(error);
+  return ((error ? fs::path(".") : temporary) / "hwsim-cache").string();
+}
+
+std::uint64_t cache_limit_bytes() {
+  const std::string text = variable("HWSIM_CACHE_MIB");
+  if (text.empty()) return kDefaultCacheLimitBytes;
+  std::uint32_t mib = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, mib);
+  if (error != std::errc() || stop != end)
+    fail("U017", "HWSIM_CACHE_MIB is `" + text + "`, must be a whole number of MiB");
+  return std::uint64_t{mib} << 20;
+}
+
+}  // namespace
+
+LabOptions options_of_environment() {
+  return {.config_folder = variable("HWSIM_CONFIG_DIR"),
+          .cache_folder = cache_folder(),
+          .cache_limit_bytes = cache_limit_bytes()};
+}
+
+}  // namespace hwsim::lab
