@@ -6,8 +6,10 @@
 #include <hwy/targets.h>
 #include <cstdlib>
 #include <fstream>
+#include <span>
 
 #include "algos/frame_run.h"
+#include "hwsim/base/content_hash.h"
 
 namespace hwsim::test {
 namespace {
@@ -33,23 +35,22 @@ class Determinism : public ::testing::TestWithParam<std::string> {
   }
 };
 
-std::uint64_t fnv1a(const void* data, std::size_t size, std::uint64_t hash = 0xcbf29ce484222325ull) {
-  for (std::size_t i = 0; i < size; ++i)
-    hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 0x100000001b3ull;
-  return hash;
+template <class T>
+std::span<const std::uint8_t> bytes_of(const T* values, std::size_t count) {
+  return {reinterpret_cast<const std::uint8_t*>(values), count * sizeof(T)};
 }
 
 /// Hashes of the image and of every chunk, and the frame's counters by name.
 std::map<std::string, std::uint64_t> signature(const FrameSetup& setup, const Emulation& e) {
   const std::string key = setup.technique + "/" + setup.scene + "/";
   std::map<std::string, std::uint64_t> all;
-  all[key + "image"] = fnv1a(e.color.pixels.data(), e.color.pixels.size() * sizeof(glm::vec4));
+  all[key + "image"] = fnv1a(bytes_of(e.color.pixels.data(), e.color.pixels.size()));
   std::uint64_t& chunks = all[key + "chunks"];
   const PassCounters sum = total(e.trace);
   for (const PassWork& pass : e.trace.passes)
     for (const PassCounters& chunk : pass.chunks)
       for (const auto& [info, place] : algos::counters())
-        chunks = fnv1a(&values(chunk)[place], sizeof(std::uint64_t), chunks);
+        chunks = fnv1a(bytes_of(&values(chunk)[place], 1), chunks);
   for (const auto& [info, place] : algos::counters()) all[key + std::string(info.id)] = values(sum)[place];
   return all;
 }
