@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cost_models/covariance.h"
-#include "cost_models/predictor.h"
+#include "hwsim/config/assign.h"
 #include "hwsim/gpu/gpu_keys.h"
 #include "hwsim/gpu/gpu_show.h"
 
@@ -93,6 +93,33 @@ double quantile_of(const Calibration& calibration, std::initializer_list<Split> 
         found != calibration.quantile90.end())
       widest = std::max(widest, found->second);
   return widest;
+}
+
+Support support_of(const Calibration& calibration, const GpuConfig& gpu, const std::string& hash,
+                   const std::string& technique) {
+  const auto fitted = [&](const std::string& id) {
+    const auto found = calibration.techniques.find(id);
+    return found != calibration.techniques.end() && found->second.contains(technique_id(technique));
+  };
+  const bool elsewhere = std::any_of(calibration.techniques.begin(), calibration.techniques.end(),
+                                     [&](const auto& entry) { return fitted(entry.first); });
+  if (changed(calibration, gpu, hash) || !elsewhere) return Support::extrapolated;
+  return fitted(gpu.id) ? Support::calibrated : Support::interpolated;
+}
+
+/// No frame of a user is a published one: the narrowest interval is that of a scene that the fit did not see.
+double interval_quantile(const Calibration& calibration, Support support) {
+  const double narrowest = quantile_of(calibration, {Split::in_sample, Split::leave_scene_out});
+  if (support == Support::interpolated)
+    return std::max(narrowest, quantile_of(calibration, {Split::leave_gpu_out}));
+  if (support != Support::extrapolated) return narrowest;
+  return std::max(narrowest, quantile_of(calibration, {Split::leave_technique_out, Split::rate_extrapolation,
+                                                       Split::leave_gpu_out}));
+}
+
+/// Whether a frame's time on the GPU depends on the parameter.
+bool of_interval(const Calibration& calibration, const CalibratedParameter& p, const std::string& gpu) {
+  return p.name != kPresent && concerns(calibration, p, gpu);
 }
 
 }  // namespace
@@ -207,47 +234,33 @@ std::optional<Fit> fit_of(const Calibration& calibration, const std::vector<Fitt
   return fit;
 }
 
-FrameInterval frame_interval(const Calibration& calibration, const WorkTrace& trace, const GpuConfig& gpu,
-                             const std::string& technique, Engine engine) {
-  const auto hash = calibration.gpu_hashes.find(gpu.id);
-  if (hash == calibration.gpu_hashes.end() || engine != Engine::queue) return {};
-  FrameInterval result;
-  const auto fitted = [&](const std::string& id) {
-    const auto found = calibration.techniques.find(id);
-    return found != calibration.techniques.end() && found->second.contains(technique_id(technique));
-  };
-  const bool elsewhere = std::any_of(calibration.techniques.begin(), calibration.techniques.end(),
-                                     [&](const auto& entry) { return fitted(entry.first); });
-  if (changed(calibration, gpu, hash->second) || !elsewhere)
-    result.support = Support::extrapolated;
-  else
-    result.support = fitted(gpu.id) ? Support::calibrated : Support::interpolated;
-
-  const std::size_t n = calibration.parameters.size();
+std::vector<std::string> interval_keys(const Calibration& calibration, const std::string& gpu) {
   std::vector<std::string> keys;
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < n; ++i) {
+  for (const CalibratedParameter& p : calibration.parameters)
+    if (of_interval(calibration, p, gpu)) keys.push_back(p.name);
+  return keys;
+}
+
+FrameInterval frame_interval(const Calibration& calibration, const TimedFrame& frame, const GpuConfig& gpu,
+                             const std::string& technique) {
+  const auto hash = calibration.gpu_hashes.find(gpu.id);
+  if (hash == calibration.gpu_hashes.end()) return {};
+  FrameInterval result{support_of(calibration, gpu, hash->second, technique), {}};
+  GpuValues<double> values = gpu;
+  const std::vector<Key> keys = keys_of(values);
+  std::vector<double> gradient(calibration.parameters.size(), 0.0);
+  for (std::size_t i = 0, next = 0; i < gradient.size(); ++i) {
     const CalibratedParameter& p = calibration.parameters[i];
-    if (p.name == kPresent || !concerns(calibration, p, gpu.id)) continue;
-    keys.push_back(p.name);
-    places.push_back(i);
+    if (!of_interval(calibration, p, gpu.id)) continue;
+    const double slope_ns = frame.slopes_ns.at(next++);
+    const Key* key = find_key(keys, p.name);
+    if (key && frame.time_ns > 0.0)
+      gradient[i] = slope_ns * *std::get<double*>(key->slot) / frame.time_ns;  // by the logarithm
   }
-  const Prediction frame = predict_frame(trace, gpu, keys);
-  std::vector<double> gradient(n, 0.0);
-  for (std::size_t k = 0; k < keys.size(); ++k) gradient[places[k]] = frame.gradient[k];
   const double sd = std::sqrt(log_variance(calibration.covariance, gradient) +
                               calibration.residual_log_sd * calibration.residual_log_sd);
-  // No frame of a user is a published one: the narrowest interval is that of a scene that the fit did not
-  // see.
-  double quantile = quantile_of(calibration, {Split::in_sample, Split::leave_scene_out});
-  if (result.support == Support::interpolated)
-    quantile = std::max(quantile, quantile_of(calibration, {Split::leave_gpu_out}));
-  if (result.support == Support::extrapolated)
-    quantile = std::max(
-        quantile, quantile_of(calibration,
-                              {Split::leave_technique_out, Split::rate_extrapolation, Split::leave_gpu_out}));
-  const double ns = frame.ms * 1e6;
-  result.interval_ns = {ns * std::exp(-quantile * sd), ns * std::exp(quantile * sd)};
+  const double quantile = interval_quantile(calibration, result.support);
+  result.interval_ns = {frame.time_ns * std::exp(-quantile * sd), frame.time_ns * std::exp(quantile * sd)};
   return result;
 }
 

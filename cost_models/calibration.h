@@ -54,10 +54,20 @@ struct FrameInterval {
   std::optional<std::array<double, 2>> interval_ns;
 };
 
-/// 90 % interval of a frame. calibrated: technique and GPU as fitted; interpolated: the technique was fitted
-/// on another GPU; extrapolated: a technique without published times, or changed numbers of the GPU. (A key
-/// that came after the fit changes a GPU when an overlay or the command line sets it.)
-FrameInterval frame_interval(const Calibration& calibration, const WorkTrace& trace, const GpuConfig& gpu,
-                             const std::string& technique, Engine engine);
+/// A frame that the queue engine timed on a GPU, with the slopes of its time by interval_keys().
+struct TimedFrame {
+  double time_ns = 0.0;
+  std::vector<double> slopes_ns;
+};
+
+/// The fitted keys of a GPU, which its intervals come from.
+std::vector<std::string> interval_keys(const Calibration& calibration, const std::string& gpu);
+
+/// 90 % interval of a frame; none on a GPU that was not fitted. calibrated: technique and GPU as fitted;
+/// interpolated: the technique was fitted on another GPU; extrapolated: a technique without published times,
+/// or changed numbers of the GPU. (A key that came after the fit changes a GPU when an overlay or the command
+/// line sets it.)
+FrameInterval frame_interval(const Calibration& calibration, const TimedFrame& frame, const GpuConfig& gpu,
+                             const std::string& technique);
 
 }  // namespace hwsim::cost_models

@@ -216,25 +216,4 @@ std::vector<double> Predictor::start() const {
   return values;
 }
 
-Prediction predict_frame(const WorkTrace& trace, const GpuConfig& gpu, const std::vector<std::string>& keys) {
-  Prediction prediction;
-  prediction.gradient.assign(keys.size(), 0.0);
-  for (std::size_t first = 0; first == 0 || first < keys.size(); first += kJetWidth) {
-    const auto place = [&](std::string_view key, double value) {
-      for (std::size_t k = first; k < std::min(keys.size(), first + kJetWidth); ++k)
-        if (keys[k] == key) return seeded(value, k - first, Jets());
-      return Jets(value);
-    };
-    const auto rates = derive_rates<Jets>(lift<Jets>(gpu, place));
-    const Jets total = sum_of_passes_ns<Jets>(trace, [&](const PassWork& pass, bool waits) {
-      const auto time = parted_time(pass, shape_of(pass), rates, waits);
-      return Jets(time.work + time.fixed);
-    });
-    prediction.ms = total.a * 1e-6;
-    for (std::size_t k = first; k < std::min(keys.size(), first + kJetWidth); ++k)
-      prediction.gradient[k] = total.v[k - first] / total.a;
-  }
-  return prediction;
-}
-
 }  // namespace hwsim::cost_models

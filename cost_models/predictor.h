@@ -66,8 +66,4 @@ class Predictor {
   std::vector<Prediction> predictions_;
 };
 
-/// Predicts a frame alone: time of the passes that `patterns` names, on a GPU whose calibrated keys have the
-/// values of `gpu`; derivatives by ln(key).
-Prediction predict_frame(const WorkTrace& trace, const GpuConfig& gpu, const std::vector<std::string>& keys);
-
 }  // namespace hwsim::cost_models

@@ -6,6 +6,7 @@
 
 #include "hwsim/detailed/detailed.h"
 #include "hwsim/timing/time_pass.h"
+#include "hwsim/timing/time_slopes.h"
 
 namespace hwsim {
 namespace {
@@ -120,10 +121,20 @@ PassTiming detailed_pass(const PassWork& pass, const GpuConfig& gpu, const GpuRa
   return timing;
 }
 
+PassTiming chunked_pass(const PassWork& pass, const GpuRates<double>& rates, Engine engine, bool waits,
+                        TimeSlopes* slopes) {
+  const PassShape shape = shape_of(pass);
+  const std::vector<ChunkCost<double>> costs = chunk_costs(pass, shape, rates);
+  PassSlopes by_costs;
+  const PassTime<double> time = time_costs(costs, rates, engine, waits, slopes ? &by_costs : nullptr);
+  if (slopes) slopes->add(pass, shape, costs, by_costs, waits);
+  return report(pass, time);
+}
+
 }  // namespace
 
 FrameTiming time_frame(const WorkTrace& trace, const GpuConfig& gpu, Engine engine,
-                       const TimingOptions& options) {
+                       const TimingOptions& options, TimeSlopes* slopes) {
   const GpuRates<double> rates = derive_rates<double>(gpu);
   FrameTiming frame;
   frame.engine = engine;
@@ -135,8 +146,8 @@ FrameTiming time_frame(const WorkTrace& trace, const GpuConfig& gpu, Engine engi
     const bool events = engine == Engine::detailed && pass.kind != PassKind::clear;
     frame.passes.push_back(
         events ? detailed_pass(pass, gpu, rates, options, p, waits(trace, p))
-               : report(pass, time_pass(pass, rates, engine == Engine::roofline ? engine : Engine::queue,
-                                        waits(trace, p))));
+               : chunked_pass(pass, rates, engine == Engine::roofline ? engine : Engine::queue,
+                              waits(trace, p), engine == Engine::queue ? slopes : nullptr));
     frame.time_ns += frame.passes.back().time_ns;
     add(frame.dram_bytes, frame.passes.back().dram_bytes);
     add_interval(frame.passes.back(), variance);

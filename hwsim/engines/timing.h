@@ -42,8 +42,12 @@ struct FrameTiming {
   StreamBytes dram_bytes;  ///< sum of the passes
 };
 
+class TimeSlopes;
+
+/// `slopes`, made for the same GPU, is given the frame's derivatives by the queue engine; others leave it as
+/// it is.
 FrameTiming time_frame(const WorkTrace& trace, const GpuConfig& gpu, Engine engine,
-                       const TimingOptions& options = {});
+                       const TimingOptions& options = {}, TimeSlopes* slopes = nullptr);
 
 /// The invariants of docs/glossary.md#invariants (bytes/time <= peak, sums); empty when all hold.
 std::vector<std::string> check_timing(const FrameTiming& timing, const WorkTrace& trace,

@@ -1,16 +1,22 @@
 #pragma once
 // A value with its derivatives by N parameters: forward automatic differentiation, the least that the
 // engines' templates ask of a scalar. The fit has its own (cost_models/jet.h), with Ceres' rounding.
-#include <array>
 #include <cmath>
 #include <cstddef>
 
 namespace hwsim {
 
+/// N doubles in vector registers, however wide these are. Each operation acts on each double alone, so that
+/// its bits are those of single ones.
+template <std::size_t N>
+struct DoublesOf {
+  using Type [[gnu::vector_size(N * sizeof(double)), gnu::aligned(alignof(double))]] = double;
+};
+
 template <std::size_t N>
 struct Dual {
   double v = 0.0;
-  std::array<double, N> d{};
+  typename DoublesOf<N>::Type d{};
 
   Dual() = default;
   explicit Dual(double value) : v(value) {}
@@ -42,20 +48,20 @@ struct Dual {
   friend Dual pow(const Dual& a, const Dual& b) {
     const double p = std::pow(a.v, b.v);
     Dual result = a.chained(p, p * b.v / a.v);
-    for (std::size_t i = 0; i < N; ++i) result.d[i] += p * std::log(a.v) * b.d[i];
+    result.d += p * std::log(a.v) * b.d;
     return result;
   }
 
  private:
   /// `value`, with the derivatives weighted: the chain rule of a function of two.
   Dual& combine(const Dual& b, double value, double weight_a, double weight_b) {
-    for (std::size_t i = 0; i < N; ++i) d[i] = weight_a * d[i] + weight_b * b.d[i];
+    d = weight_a * d + weight_b * b.d;
     v = value;
     return *this;
   }
   Dual chained(double value, double slope) const {
     Dual result(value);
-    for (std::size_t i = 0; i < N; ++i) result.d[i] = slope * d[i];
+    result.d = slope * d;
     return result;
   }
   Dual scaled(double factor) const { return chained(v * factor, factor); }

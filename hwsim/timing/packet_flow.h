@@ -27,6 +27,12 @@ struct FlowResult {
   std::vector<T> critical_ns;  ///< by unit: its part of the longest path; sums to the makespan
 };
 
+/// What the makespan gains for each ns of a service and of a latency, and for each packet of room, in the
+/// order of the table. Nearly all are zero: only the terms on the longest paths count.
+struct FlowSlopes {
+  std::vector<double> ns, latency_ns, room_packets;
+};
+
 /// Max-plus recurrence over the first and the last packet of each chunk:
 ///   start[u][k] = max(end[u][k-1], start[u-1][k] + packet[u-1][k] + latency[u-1][k])
 ///   end[u][k]   = max(start[u][k] + service[u][k], end[u-1][k] + latency[u-1][k] + packet[u][k],
@@ -43,6 +49,7 @@ class PacketFlow {
         end_(start_),
         start_from_(table.ns.size(), From::nothing),
         end_from_(table.ns.size(), From::nothing),
+        unblocked_from_(table.ns.size(), From::nothing),
         blocking_chunk_(table.ns.size(), 0),
         before_(table.chunks + 1, 0.0),
         reached_(table.units, 0) {
@@ -55,6 +62,25 @@ class PacketFlow {
       for (std::size_t u = t_.units; u-- > 1;) block(u - 1, k);
     }
     return walk_back();
+  }
+
+  /// The derivatives of the makespan, after run(): the recurrence backwards, each maximum as the term that
+  /// was last. At a kink they are those of one side.
+  FlowSlopes slopes() const {
+    FlowSlopes found;
+    for (std::vector<double>* column : {&found.ns, &found.latency_ns, &found.room_packets})
+      column->assign(t_.ns.size(), 0.0);
+    if (t_.units == 0 || t_.chunks == 0) return found;
+    Weights of{std::vector<double>(t_.ns.size(), 0.0), std::vector<double>(t_.ns.size(), 0.0)};
+    const Place last = last_place();
+    const std::size_t i = index(last.u, last.k);
+    of.end[i] = 1.0;
+    if (last.u + 1 == t_.units) found.latency_ns[i] = 1.0;
+    for (std::size_t k = t_.chunks; k-- > 0;) {
+      for (std::size_t u = 0; u + 1 < t_.units; ++u) unblock(u, k, of, found);
+      for (std::size_t u = t_.units; u-- > 0;) retreat(u, k, of, found);
+    }
+    return found;
   }
 
  private:
@@ -99,6 +125,7 @@ class PacketFlow {
     const T done = start_[after] + part * (end_[after] - start_[after]) + packet_ns(i, k);
     if (!(end_[i] < done)) return;
     end_[i] = done;
+    unblocked_from_[i] = end_from_[i];
     end_from_[i] = From::unit_after;
     blocking_chunk_[i] = j;
   }
@@ -109,18 +136,66 @@ class PacketFlow {
     bool end;
   };
 
+  /// The longest path ends here.
+  Place last_place() const {
+    Place at{t_.units - 1, t_.chunks - 1, true};
+    for (std::size_t u = 0; u + 1 < t_.units; ++u)
+      if (left(index(at.u, at.k)) < end_[index(u, at.k)]) at.u = u;
+    for (std::size_t k = 0; k < t_.chunks; ++k)
+      if (left(index(at.u, at.k)) < left(index(t_.units - 1, k))) at = {t_.units - 1, k, true};
+    return at;
+  }
+
+  /// When what ends here has left the unit.
+  T left(std::size_t i) const { return end_[i] + t_.latency_ns[i]; }
+
+  /// What the makespan gains for each ns of a start and of an end.
+  struct Weights {
+    std::vector<double> start, end;
+  };
+
+  /// block() backwards: from an end that another unit caused to that unit's work.
+  void unblock(std::size_t u, std::size_t k, Weights& of, FlowSlopes& found) const {
+    const std::size_t i = index(u, k);
+    if (end_from_[i] != From::unit_after || of.end[i] == 0.0) return;
+    const double weight = of.end[i];
+    of.end[i] = 0.0;
+    const std::size_t j = blocking_chunk_[i], after = index(u + 1, j);
+    const double part = (before_[k + 1] - t_.room_packets[i] - before_[j]) / t_.packets[j];
+    of.start[after] += weight * (1.0 - part);
+    of.end[after] += weight * part;
+    found.room_packets[i] -= weight * (end_[after] - start_[after]) / t_.packets[j];
+    found.ns[i] += weight / t_.packets[k];
+  }
+
+  /// advance() backwards.
+  void retreat(std::size_t u, std::size_t k, Weights& of, FlowSlopes& found) const {
+    const std::size_t i = index(u, k);
+    const From end_from = end_from_[i] == From::unit_after ? unblocked_from_[i] : end_from_[i];
+    if (const double weight = of.end[i]; weight != 0.0) {
+      const bool waited = end_from == From::unit_before;
+      found.ns[i] += waited ? weight / t_.packets[k] : weight;
+      if (waited) found.latency_ns[i - 1] += weight;
+      (waited ? of.end[i - 1] : of.start[i]) += weight;
+    }
+    const double weight = of.start[i];
+    if (weight == 0.0 || start_from_[i] == From::nothing) return;
+    if (start_from_[i] == From::same_unit) {
+      of.end[index(u, k - 1)] += weight;
+    } else {
+      of.start[i - 1] += weight;
+      found.ns[i - 1] += weight / t_.packets[k];
+      found.latency_ns[i - 1] += weight;
+    }
+  }
+
   /// Each step goes to the term that was last; the difference of the two times belongs to the unit that the
   /// step leaves, and to the unit after it where that one blocked it.
   FlowResult<T> walk_back() const {
     FlowResult<T> result;
     result.critical_ns.assign(t_.units, T(0.0));
     if (t_.units == 0 || t_.chunks == 0) return result;
-    Place at{t_.units - 1, t_.chunks - 1, true};
-    const auto left = [this](std::size_t i) { return end_[i] + t_.latency_ns[i]; };
-    for (std::size_t u = 0; u + 1 < t_.units; ++u)
-      if (left(index(at.u, at.k)) < end_[index(u, at.k)]) at.u = u;
-    for (std::size_t k = 0; k < t_.chunks; ++k)
-      if (left(index(at.u, at.k)) < left(index(t_.units - 1, k))) at = {t_.units - 1, k, true};
+    Place at = last_place();
     const std::size_t last = index(at.u, at.k);
     const bool behind = at.u + 1 == t_.units;  // what leaves the last unit still takes its latency
     result.makespan_ns = behind ? left(last) : end_[last];
@@ -171,6 +246,7 @@ class PacketFlow {
   const FlowTable<T>& t_;
   std::vector<T> start_, end_;
   std::vector<From> start_from_, end_from_;
+  std::vector<From> unblocked_from_;  ///< what end_from_ was before another unit blocked it
   std::vector<std::size_t> blocking_chunk_;
   std::vector<double> before_;  ///< packets of earlier chunks
   std::vector<std::size_t> reached_;

@@ -1,6 +1,8 @@
 #pragma once
 // The engines: chunks' costs to the time of a pass. T is double to predict, a Jet to fit.
 #include <cmath>
+#include <type_traits>
+#include <utility>
 
 #include "hwsim/timing/engine.h"
 #include "hwsim/timing/packet_flow.h"
@@ -87,6 +89,27 @@ void roofline_time(PassTime<T>& time, const GpuRates<T>& rates) {
   shares.share(time);
 }
 
+/// The chunks up to one that together fill a place once, as the last of them goes there.
+template <class T>
+struct FillWindow {
+  const std::vector<ChunkCost<T>>& costs;
+  T ChunkCost<T>::*fills;
+  T inside{0.0};  ///< fills of chunks [first, k]
+  double packets = 0.0;
+  std::size_t first = 0;
+
+  void take(std::size_t k) {
+    inside += costs[k].*fills;
+    packets += costs[k].packets;
+    for (; !(inside - costs[first].*fills < T(1.0)) && first < k; ++first) {
+      inside -= costs[first].*fills;
+      packets -= costs[first].packets;
+    }
+  }
+  bool is_empty() const { return !(inside > T(0.0)); }
+  T over() const { return inside - T(1.0); }
+};
+
 /// For each chunk, the packets up to its end that fill a place once; more than there are while it is not
 /// full. Those that put nothing there count as packets all the same: they pass between the others. Where
 /// nothing has come yet, nothing is held: depth alone passes by the cores, and waits for its lines.
@@ -94,23 +117,17 @@ template <class T>
 std::vector<T> packets_of_a_fill(const std::vector<ChunkCost<T>>& costs, T ChunkCost<T>::*fills) {
   std::vector<T> packets;
   packets.reserve(costs.size());
-  T inside(0.0);  // fills of chunks [first, k]
-  double inside_packets = 0.0;
-  std::size_t first = 0;
+  FillWindow<T> window{costs, fills};
   for (std::size_t k = 0; k < costs.size(); ++k) {
-    inside += costs[k].*fills;
-    inside_packets += costs[k].packets;
-    for (; !(inside - costs[first].*fills < T(1.0)) && first < k; ++first) {
-      inside -= costs[first].*fills;
-      inside_packets -= costs[first].packets;
-    }
-    const T over = inside - T(1.0);
-    if (!(inside > T(0.0)))
+    window.take(k);
+    const T over = window.over();
+    const ChunkCost<T>& first = costs[window.first];
+    if (window.is_empty())
       packets.push_back(T(0.0));
     else if (over < T(0.0))
-      packets.push_back(T(2.0 * inside_packets + 1.0));
+      packets.push_back(T(2.0 * window.packets + 1.0));
     else
-      packets.push_back(inside_packets - over / (costs[first].*fills) * costs[first].packets);
+      packets.push_back(window.packets - over / (first.*fills) * first.packets);
   }
   return packets;
 }
@@ -148,22 +165,33 @@ FlowTable<T> flow_table(const std::vector<ChunkCost<T>>& costs, const std::vecto
   return table;
 }
 
+/// The derivatives of a pass's time by what its chunks cost.
+struct PassSlopes {
+  std::vector<std::size_t> units;  ///< columns of the flow
+  FlowSlopes flow;
+};
+
 template <class T>
-void queue_time(PassTime<T>& time, const std::vector<ChunkCost<T>>& costs, const GpuRates<T>& rates) {
+void queue_time(PassTime<T>& time, const std::vector<ChunkCost<T>>& costs, const GpuRates<T>& rates,
+                PassSlopes* slopes) {
   std::vector<std::size_t> units;
   for (std::size_t u = 0; u < kUnitCount; ++u)
     if (time.busy_ns[u] > T(0.0)) units.push_back(u);
   if (units.empty()) return;
   const FlowTable<T> table = flow_table(costs, units, rates);
-  const FlowResult<T> result = PacketFlow<T>(table).run();
+  PacketFlow<T> flow(table);
+  const FlowResult<T> result = flow.run();
   time.time_ns = result.makespan_ns;
   for (std::size_t i = 0; i < units.size(); ++i) time.stack_ns[units[i]] = result.critical_ns[i];
+  if constexpr (std::is_same_v<T, double>)
+    if (slopes) *slopes = {std::move(units), flow.slopes()};
 }
 
-/// `waits`: the pass begins after everything before it has drained, and pays for that.
+/// `waits`: the pass begins after everything before it has drained, and pays for that. `slopes` is filled by
+/// the queue engine over doubles.
 template <class T>
 PassTime<T> time_costs(const std::vector<ChunkCost<T>>& costs, const GpuRates<T>& rates, Engine engine,
-                       bool waits) {
+                       bool waits, PassSlopes* slopes = nullptr) {
   PassTime<T> time;
   for (const ChunkCost<T>& cost : costs) {
     for (std::size_t u = 0; u < kUnitCount; ++u) time.busy_ns[u] += cost.ns[u];
@@ -172,7 +200,7 @@ PassTime<T> time_costs(const std::vector<ChunkCost<T>>& costs, const GpuRates<T>
   if (engine == Engine::roofline)
     roofline_time(time, rates);
   else
-    queue_time(time, costs, rates);
+    queue_time(time, costs, rates, slopes);
   split_shader_stack(time);
   if (waits) time.overhead_ns = rates.pass_overhead_ns;
   time.time_ns += time.overhead_ns;

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "cost_models/calibration.h"
+#include "hwsim/timing/time_slopes.h"
 
 namespace hwsim::lab {
 namespace {
@@ -14,10 +15,20 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void add_interval(PointResult& point, const cost_models::Calibration& calibration) {
+/// Times the frame, with its interval where the calibration knows the GPU.
+void time_point(PointResult& point, const RunPlan& plan) {
+  const WorkTrace& trace = point.emulation->trace;
+  const GpuConfig& gpu = *point.gpu;
+  const auto* calibration = plan.engine == Engine::queue ? plan.calibration.get() : nullptr;
+  if (!calibration || !calibration->gpu_hashes.contains(gpu.id)) {
+    point.timing = time_frame(trace, gpu, plan.engine, plan.timing);
+    return;
+  }
+  TimeSlopes slopes(gpu, cost_models::interval_keys(*calibration, gpu.id));
+  point.timing = time_frame(trace, gpu, plan.engine, plan.timing, &slopes);
   const cost_models::FrameInterval found =
-      cost_models::frame_interval(calibration, point.emulation->trace, *point.gpu,
-                                  algos::technique_text(*point.technique), point.timing.engine);
+      cost_models::frame_interval(*calibration, {point.timing.time_ns, slopes.ns()}, gpu,
+                                  algos::technique_text(*point.technique));
   point.timing.support = found.support;
   point.timing.interval_ns = found.interval_ns;
 }
@@ -34,10 +45,9 @@ PointResult Simulator::run(const algos::TechniqueChoice& technique, const GpuCon
   point.emulation = frame.emulation;
   point.from_cache = frame.from_cache;
   const auto start = std::chrono::steady_clock::now();
-  point.timing = time_frame(point.emulation->trace, gpu, plan_.engine, plan_.timing);
+  time_point(point, plan_);
   point.timing_wall_s = seconds_since(start);
   check_invariants(point.emulation->trace, point.timing, gpu);
-  if (plan_.calibration) add_interval(point, *plan_.calibration);
   if (reference_)
     point.image_error = pipeline::compare(point.emulation->color, reference_->image, &point.flip_map);
   return point;

@@ -10,6 +10,7 @@
 
 #include "cost_models/synthetic.h"
 #include "hwsim/gpu/gpu_show.h"
+#include "hwsim/timing/time_slopes.h"
 
 namespace hwsim::cost_models::test {
 namespace {
@@ -124,6 +125,13 @@ TEST_F(CalibrationTest, GpuFilesHoldWhatWasFittedAndExtendTheDocumentedGpu) {
   EXPECT_NE(loaded.dram_efficiency_ratio, documented.dram_efficiency_ratio);
 }
 
+FrameInterval interval_of(const Calibration& c, const WorkTrace& trace, const GpuConfig& gpu,
+                          const std::string& technique) {
+  TimeSlopes slopes(gpu, interval_keys(c, gpu.id));
+  const double time_ns = time_frame(trace, gpu, Engine::queue, {}, &slopes).time_ns;
+  return frame_interval(c, {time_ns, slopes.ns()}, gpu, technique);
+}
+
 // A key that hwsim gained since the fit, at the value that the GPU's file or the default gives, is no reason
 // to write the calibration anew; a user who sets it has another GPU.
 TEST_F(CalibrationTest, KeysThatCameAfterTheFitLeaveSupportAsItWas) {
@@ -136,7 +144,7 @@ TEST_F(CalibrationTest, KeysThatCameAfterTheFitLeaveSupportAsItWas) {
     GpuConfig used = gpu;
     used.draw_cycles = draw_cycles;
     used.origins["draw_cycles"].layer = layer;
-    return frame_interval(c, *trace, used, "t1", Engine::queue).support;
+    return interval_of(c, *trace, used, "t1").support;
   };
   EXPECT_EQ(support(Origin::Layer::built_in, gpu.draw_cycles), Support::calibrated);
   EXPECT_EQ(support(Origin::Layer::parent, 3.0), Support::calibrated);
@@ -149,11 +157,11 @@ TEST_F(CalibrationTest, FramesCarryIntervalsThatWidenWithDistance) {
   const GpuConfig gpu = calibrated_gpu(experiment().gpus.front(), c);
   const auto trace = random_trace(4711);
   const auto width = [](const FrameInterval& i) { return (*i.interval_ns)[1] / (*i.interval_ns)[0]; };
-  const FrameInterval known = frame_interval(c, *trace, gpu, "t1:x=2", Engine::queue);
-  const FrameInterval unknown = frame_interval(c, *trace, gpu, "other", Engine::queue);
+  const FrameInterval known = interval_of(c, *trace, gpu, "t1:x=2");
+  const FrameInterval unknown = interval_of(c, *trace, gpu, "other");
   GpuConfig changed = gpu;
   changed.dram_bandwidth_gb_s *= 2.0;
-  const FrameInterval what_if = frame_interval(c, *trace, changed, "t1", Engine::queue);
+  const FrameInterval what_if = interval_of(c, *trace, changed, "t1");
   EXPECT_EQ(known.support, Support::calibrated);
   EXPECT_EQ(unknown.support, Support::extrapolated);
   EXPECT_EQ(what_if.support, Support::extrapolated);
@@ -164,8 +172,7 @@ TEST_F(CalibrationTest, FramesCarryIntervalsThatWidenWithDistance) {
   EXPECT_GT((*known.interval_ns)[1], time_ns);
   GpuConfig other = gpu;
   other.id = "never seen";
-  EXPECT_EQ(frame_interval(c, *trace, other, "t1", Engine::queue).support, Support::uncalibrated);
-  EXPECT_FALSE(frame_interval(c, *trace, gpu, "t1", Engine::roofline).interval_ns);
+  EXPECT_EQ(interval_of(c, *trace, other, "t1").support, Support::uncalibrated);
 }
 
 /// The calibration whose splits all have the quantile 1; the width of an interval is the logarithm over the
@@ -179,7 +186,7 @@ class QuantileTest : public CalibrationTest {
     c_.techniques = {{gpu_.id, {"here"}}, {experiment().gpus.back().id, {"elsewhere"}}};
   }
   double width(const std::string& technique) {
-    const FrameInterval i = frame_interval(c_, *trace_, gpu_, technique, Engine::queue);
+    const FrameInterval i = interval_of(c_, *trace_, gpu_, technique);
     return std::log((*i.interval_ns)[1] / (*i.interval_ns)[0]);
   }
   /// How much wider the interval becomes when one split alone has three times the quantile.
