@@ -52,11 +52,8 @@ class Builder {
     const GpuConfig& gpu = experiment_.gpus[replay.gpu];
     try {
       replay.trace = traces_(spec, gpu);
-      if (spec.point_lights > 0 || spec.lights == "complex") {
-        RunSpec unlit = spec;
-        unlit.point_lights = 0;
-        if (spec.lights == "complex") unlit.lights = "simple";
-        replay.unlit = traces_(unlit, gpu);
+      if (!spec.unlit.empty()) {
+        replay.unlit = traces_(without_lights(spec), gpu);
         if (!same_passes(*replay.trace, *replay.unlit)) replay.unlit = nullptr;
       }
     } catch (const InputError& error) {

@@ -8,23 +8,20 @@ namespace {
 
 constexpr std::string_view kKind = "hwkept";
 constexpr std::uint64_t kVersion =
-    1;  // raised when the order below changes; passes have the trace file's version
+    2;  // raised when the order below changes; passes have the trace file's version
 
 /// The one order of a run's fields, for writing and reading.
-template <class Spec, class Text, class Whole, class Real>
-void describe_run(Spec& run, const Text& text, const Whole& whole, const Real& real) {
-  auto& [scene, camera, technique, gpu, width_px, height_px, point_lights, light_range, lights, shadows] =
-      run;
+template <class Spec, class Text, class Whole>
+void describe_run(Spec& run, const Text& text, const Whole& whole) {
+  auto& [scene, camera, technique, gpu, width_px, height_px, settings, unlit] = run;
   text(scene);
   text(camera);
   text(technique);
   text(gpu);
   whole(width_px);
   whole(height_px);
-  whole(point_lights);
-  real(light_range);
-  text(lights);
-  whole(shadows);
+  text(settings);
+  text(unlit);
 }
 
 /// Numbers the different passes of all traces.
@@ -52,8 +49,7 @@ RunSpec read_run(ByteReader& in) {
   RunSpec run;
   describe_run(
       run, [&](std::string& text) { text = in.text(); },
-      [&](auto& whole) { whole = static_cast<std::remove_reference_t<decltype(whole)>>(in.integer()); },
-      [&](double& real) { real = in.real(); });
+      [&](int& whole) { whole = static_cast<int>(in.integer()); });
   return run;
 }
 
@@ -66,9 +62,7 @@ std::vector<std::uint8_t> encode_kept(const KeptTraces& kept) {
   out.count(kept.traces.size());
   for (const auto& [run, trace] : kept.traces) {
     describe_run(
-        run, [&](const std::string& text) { out.text(text); },
-        [&](auto whole) { out.integer(static_cast<std::int64_t>(whole)); },
-        [&](double real) { out.real(real); });
+        run, [&](const std::string& text) { out.text(text); }, [&](int whole) { out.integer(whole); });
     pool.name_counters(*trace);
     out.text(trace->scene);
     out.text(trace->technique);

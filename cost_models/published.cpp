@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <set>
+#include <sstream>
 
 #include "cost_models/table_number.h"
 #include "hwsim/base/csv.h"
@@ -38,8 +40,7 @@ Diagnostic mapping_problem(const std::string& message, const std::string& path, 
   return problem;
 }
 
-constexpr NumberRange kPixels{1.0, 16384.0, true}, kRate{1.0, 64.0, true}, kLights{0.0, 4096.0, true},
-    kLightRange{1e-6, 1e6}, kRepeat{1.0, 1e6};
+constexpr NumberRange kPixels{1.0, 16384.0, true}, kRate{1.0, 64.0, true}, kRepeat{1.0, 1e6};
 
 constexpr std::string_view kNotPrinted = "NA";
 
@@ -141,8 +142,6 @@ class Mapper {
         scenes_((folder / "scenes.csv").string(), 4),
         techniques_((folder / "techniques.csv").string(), 4),
         passes_((folder / "passes.csv").string(), 3) {
-    scenes_.check_numbers("point_lights", kLights, problems_);
-    scenes_.check_numbers("light_range", kLightRange, problems_);
     techniques_.check_numbers("repeat", kRepeat, problems_);
     if (!problems_.empty()) throw InputError(problems_);
   }
@@ -196,10 +195,8 @@ class Mapper {
     RunSpec& run = cell.run;
     run.scene = scenes_.text(*scene, "stand_in");
     run.camera = scenes_.text(*scene, "camera");
-    run.point_lights = static_cast<int>(scenes_.number(*scene, "point_lights"));
-    run.light_range = scenes_.number(*scene, "light_range");
-    run.lights = scenes_.text(*scene, "lights");
-    run.shadows = scenes_.text(*scene, "shadows") == "yes";
+    run.settings = scenes_.text(*scene, "settings");
+    run.unlit = scenes_.text(*scene, "unlit");
     run.technique = filled(techniques_.text(*technique, "template"), row);
     cell.repeat = techniques_.number(*technique, "repeat");
     for (const auto& line : gpus_.rows)
@@ -246,6 +243,11 @@ void check_numbers(const PublishedRow& row, const CsvFile& file, std::size_t at,
     problems.push_back(number_problem(row.msaa, "msaa", range_text(kRate) + ", or nothing", file, at));
 }
 
+std::vector<std::string> words(const std::string& text) {
+  std::istringstream in(text);
+  return {std::istream_iterator<std::string>(in), {}};
+}
+
 bool matches_one(std::string_view pattern, std::string_view pass) {
   if (pattern.ends_with('*')) return pass.starts_with(pattern.substr(0, pattern.size() - 1));
   return pattern == pass;
@@ -258,8 +260,21 @@ std::string PublishedRow::id() const { return table + ":" + std::to_string(line)
 std::string RunSpec::to_string() const {
   return technique + " of " + scene + (camera == "0" ? "" : " (" + camera + ")") + " at " +
          std::to_string(width_px) + "x" + std::to_string(height_px) +
-         (point_lights > 0 ? ", " + std::to_string(point_lights) + " point lights" : "") +
-         (lights == "scene" ? "" : ", " + lights + " lights") + (shadows ? ", shadows" : "") + ", on " + gpu;
+         (settings.empty() ? "" : ", " + settings) + ", on " + gpu;
+}
+
+RunSpec without_lights(const RunSpec& run) {
+  RunSpec unlit = run;
+  unlit.settings.clear();
+  for (const std::string& setting : words(run.settings)) {
+    const std::string path = setting.substr(0, setting.find('='));
+    std::string kept = setting;
+    for (const std::string& other : words(run.unlit))
+      if (other.substr(0, other.find('=')) == path) kept = other;
+    unlit.settings += (unlit.settings.empty() ? "" : " ") + kept;
+  }
+  unlit.unlit.clear();
+  return unlit;
 }
 
 std::string_view row_use_name(RowUse use) {

@@ -19,20 +19,22 @@ struct PublishedRow {
   std::string id() const;  ///< "agaa_table1:12"
 };
 
-/// A run that stands for rows: everything that a work trace depends on.
+/// A run that stands for rows: everything that a work trace depends on. What its settings mean is known to
+/// whoever makes the trace.
 struct RunSpec {
   std::string scene;  ///< "sponza_hall", or a generator with parameters
   std::string camera;
   std::string technique;  ///< "sbaa_top:n=2,msaa=8"
   std::string gpu;
   int width_px = 0, height_px = 0;
-  int point_lights = 0;          ///< added to those of the scene
-  double light_range = 0.0;      ///< reach of these lights, as a part of the scene's diagonal
-  std::string lights = "scene";  ///< or SBAA's profiles: simple, complex
-  bool shadows = true;
+  std::string settings;  ///< "scene.lights=simple scene.shadows=false": as `--set` takes them
+  std::string unlit;     ///< those of the same run without its added lights; empty where it has none
   std::string to_string() const;
   friend auto operator<=>(const RunSpec&, const RunSpec&) = default;
 };
+
+/// The run without its added lights; `unlit` must not be empty.
+RunSpec without_lights(const RunSpec& run);
 
 /// What is done with a row.
 enum class RowUse {

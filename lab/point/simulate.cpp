@@ -26,9 +26,8 @@ void time_point(PointResult& point, const RunPlan& plan) {
   }
   TimeSlopes slopes(gpu, cost_models::interval_keys(*calibration, gpu.id));
   point.timing = time_frame(trace, gpu, plan.engine, plan.timing, &slopes);
-  const cost_models::FrameInterval found =
-      cost_models::frame_interval(*calibration, {point.timing.time_ns, slopes.ns()}, gpu,
-                                  algos::technique_text(*point.technique));
+  const cost_models::FrameInterval found = cost_models::frame_interval(
+      *calibration, {point.timing.time_ns, slopes.ns()}, gpu, algos::technique_text(*point.technique));
   point.timing.support = found.support;
   point.timing.interval_ns = found.interval_ns;
 }

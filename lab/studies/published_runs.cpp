@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "lab/base/messages.h"
+#include "lab/base/text.h"
 #include "lab/point/simulate.h"
 
 namespace hwsim::lab {
@@ -22,14 +24,7 @@ class RunTraces {
       : cache_(cache), store_({.jobs = jobs, .disk = true}, cache, observer) {}
 
   std::shared_ptr<const WorkTrace> trace(const RunSpec& spec, const GpuConfig& gpu) {
-    View view;
-    view.scene = spec.scene;
-    view.camera = spec.camera;
-    view.resolution = {spec.width_px, spec.height_px};
-    view.point_lights = spec.point_lights;
-    view.light_range = spec.light_range;
-    view.shadows = spec.shadows;
-    view.lights = spec.lights;
+    const View view = request_of(spec).view;
     const algos::TechniqueChoice technique = algos::parse_technique(spec.technique);
     if (!scene_ || !(scene_->plan() == view)) scene_ = std::make_unique<SceneView>(view, cache_, silent_);
     std::shared_ptr<const WorkTrace>& known =
@@ -64,7 +59,41 @@ std::string technique_problem(const RunSpec& run) {
   }
 }
 
+/// Settings that no request takes, of all runs: each once, with the file that says them.
+void check_settings(const std::vector<cost_models::Cell>& cells, const ConfigFolder& folder) {
+  std::set<std::string> known;
+  std::vector<Diagnostic> problems;
+  for (const cost_models::Cell& cell : cells) {
+    if (!cell.has_run || !known.insert(cell.run.settings + "|" + cell.run.unlit).second) continue;
+    try {
+      request_of(cell.run);
+      if (!cell.run.unlit.empty()) request_of(cost_models::without_lights(cell.run));
+    } catch (const InputError& error) {
+      append(problems, error);
+    }
+  }
+  for (Diagnostic& problem : problems) problem.place.file = folder.published() + "/mapping/scenes.csv";
+  if (!problems.empty()) throw InputError(problems);
+}
+
 }  // namespace
+
+Request request_of(const RunSpec& run) {
+  Request request;
+  request.view.scene = run.scene;
+  request.view.resolution = {run.width_px, run.height_px};
+  request.view.camera = run.camera;
+  request.techniques = {run.technique};
+  request.gpus = {run.gpu};
+  std::vector<Assignment> sets;
+  for (const std::string& word : split(run.settings, ' '))
+    if (!word.empty()) sets.push_back(parse_assignment(word));
+  std::vector<Diagnostic> problems;
+  apply(request, sets, problems);
+  check_choices(request.view, problems);
+  if (!problems.empty()) throw InputError(problems);
+  return request;
+}
 
 bool in_papers(const cost_models::Cell& cell, const std::vector<std::string>& papers) {
   return papers.empty() || std::find(papers.begin(), papers.end(), lower(cell.row.document)) != papers.end();
@@ -83,6 +112,7 @@ std::vector<cost_models::Cell> published_cells(const std::vector<std::string>& p
   check_papers(papers);
   std::vector<cost_models::Cell> cells =
       cost_models::map_rows(cost_models::load_published(folder.published()), folder.published());
+  check_settings(cells, folder);
   std::erase_if(cells, [&](const cost_models::Cell& cell) { return !in_papers(cell, papers); });
   return cells;
 }

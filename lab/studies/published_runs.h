@@ -10,6 +10,9 @@
 
 namespace hwsim::lab {
 
+/// What is asked of the lab to have a run's work. Throws InputError for settings that no request takes.
+Request request_of(const cost_models::RunSpec& run);
+
 /// "sss" from `SSS`; every row without a filter.
 bool in_papers(const cost_models::Cell& cell, const std::vector<std::string>& papers);
 

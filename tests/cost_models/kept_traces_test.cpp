@@ -11,7 +11,7 @@ namespace hwsim::cost_models::test {
 namespace {
 
 RunSpec run(const std::string& technique) {
-  return {"grass", "close", technique, "hd5870", 1280, 720, 16, 0.25, "complex", false};
+  return {"grass", "close", technique, "hd5870", 1280, 720, "scene.lights=complex", "scene.lights=simple"};
 }
 
 /// Two techniques that begin with the same pass.

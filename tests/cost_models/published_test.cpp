@@ -101,12 +101,27 @@ TEST(Published, PercentagesBecomeTheAbsoluteTimesThatTheyWerePrintedFrom) {
   EXPECT_EQ(top.run.technique, "sbaa_top:n=2,msaa=8,centroid=off");
   EXPECT_EQ(top.run.gpu, "hd5870");
   EXPECT_EQ(top.run.width_px, 1280);
-  EXPECT_EQ(top.run.point_lights, 0);
+  EXPECT_NE(top.run.settings.find("scene.lights=simple"), std::string::npos) << top.run.settings;
   // README 18: all of them lie within 0.011 ms of a multiple of 0.1 ms.
   for (const Cell& cell : cells)
     if (cell.row.quantity == "percent_change_time") {
       EXPECT_NEAR(cell.published, std::round(cell.published * 10.0) / 10.0, 0.0111) << cell.row.id();
     }
+}
+
+TEST(Published, RunWithoutItsLightsHasTheOtherSettingsAsTheyWere) {
+  const RunSpec run{.scene = "metal",
+                    .camera = "0",
+                    .technique = "none",
+                    .gpu = "gtx980",
+                    .width_px = 640,
+                    .height_px = 360,
+                    .settings = "scene.point_lights=16 scene.light_range=1 scene.shadows=true",
+                    .unlit = "scene.point_lights=0"};
+  RunSpec expected = run;
+  expected.settings = "scene.point_lights=0 scene.light_range=1 scene.shadows=true";
+  expected.unlit = "";
+  EXPECT_EQ(without_lights(run), expected);
 }
 
 TEST(Published, ContradictedRowsAreLeftOut) {

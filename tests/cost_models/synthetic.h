@@ -92,8 +92,8 @@ inline Synthetic make_synthetic(int scenes = 3, int techniques = 4) {
       for (int technique = 0; technique < techniques; ++technique) {
         Replay replay;
         replay.gpu = g;
-        replay.run = {name,    "0",  "t" + std::to_string(technique), e.gpus[g].id, 64, 64, 0, 0.15,
-                      "scene", false};
+        replay.run = {name, "0", "t" + std::to_string(technique), e.gpus[g].id,
+                      64,   64,  "scene.shadows=false",           ""};
         replay.trace = random_trace(1000 * g + 100 * static_cast<std::size_t>(scene) +
                                     static_cast<std::size_t>(technique) + 1);
         for (const PassWork& pass : replay.trace->passes) {
