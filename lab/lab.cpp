@@ -162,13 +162,12 @@ std::vector<Explanation> Lab::explain(const RunPlan& given) {
   return std::move(sink.explanations);
 }
 
-std::vector<PlannedPoint> Lab::plan_sweep(const Request& request,
-                                          const std::vector<std::vector<Assignment>>& settings) {
-  return lab::plan_sweep(request, settings, *session_);
+SweepPlan Lab::plan_sweep(const Request& request, PointSettings settings) {
+  return {request, std::move(settings), *session_};
 }
 
-SweepSummary Lab::sweep(const std::vector<PlannedPoint>& points, const SweepJob& job) {
-  return run_sweep(points, job, *session_);
+SweepSummary Lab::sweep(const SweepPlan& plan, const SweepJob& job) {
+  return run_sweep(plan, job, *session_);
 }
 
 Reproduction Lab::reproduce(const std::string& paper) {

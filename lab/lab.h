@@ -64,11 +64,10 @@ class Lab {
   std::vector<Explanation> explain(const Request& request);
   std::vector<Explanation> explain(const RunPlan& plan);
 
-  /// Every technique on every GPU with each list of settings, into a database. Points stay valid as long as
+  /// Every technique on every GPU with each list of settings, into a database. A plan stays valid as long as
   /// the lab.
-  std::vector<PlannedPoint> plan_sweep(const Request& request,
-                                       const std::vector<std::vector<Assignment>>& settings);
-  SweepSummary sweep(const std::vector<PlannedPoint>& points, const SweepJob& job);
+  SweepPlan plan_sweep(const Request& request, PointSettings settings);
+  SweepSummary sweep(const SweepPlan& plan, const SweepJob& job);
 
   /// The tables of a paper, published beside predicted.
   Reproduction reproduce(const std::string& paper);

@@ -16,7 +16,7 @@ Trials trials_of(const CompareOptions& options) {
   for (const std::string& list : options.what_ifs)
     for (std::string& what_if : split(list, ',')) trials.what_ifs.push_back(std::move(what_if));
   if (!options.vary.empty())
-    trials.points = combine(parse_axes(options.vary), options.zip ? Combine::zip : Combine::grid);
+    trials.points = PointSettings(parse_axes(options.vary), options.zip ? Combine::zip : Combine::grid).all();
   return trials;
 }
 

@@ -13,10 +13,10 @@
 namespace hwsim::cli {
 namespace {
 
-std::vector<std::vector<Assignment>> settings_of(const SweepOptions& options) {
-  const std::vector<Axis> axes = parse_axes(options.vary);
-  return options.sample ? latin_hypercube(axes, parse_sample(*options.sample), options.seed)
-                        : combine(axes, options.zip ? Combine::zip : Combine::grid);
+PointSettings settings_of(const SweepOptions& options) {
+  std::vector<Axis> axes = parse_axes(options.vary);
+  if (options.sample) return {std::move(axes), parse_sample(*options.sample), options.seed};
+  return {std::move(axes), options.zip ? Combine::zip : Combine::grid};
 }
 
 SweepJob job_of(const SweepOptions& options, const std::vector<std::string>& arguments) {
@@ -39,20 +39,19 @@ ExitStatus sweep(const SweepOptions& options, Context& context) {
     fail_usage("U002", "no scene, and no database `" + options.database + "` to print", "",
                "`hwsim sweep --help` shows examples");
   Lab lab(lab_options(options, context.log));
-  std::vector<PlannedPoint> points;
+  SweepPlan plan;
   if (has_scene) {
-    const std::vector<std::vector<Assignment>> settings = settings_of(options);
-    points = lab.plan_sweep(request_of(options), settings);
+    plan = lab.plan_sweep(request_of(options), settings_of(options));
     context.log.say(
-        fmt::format("plan: {}, {} points, database {}", options.view.scene, points.size(), options.database));
+        fmt::format("plan: {}, {} points, database {}", options.view.scene, plan.size(), options.database));
   }
   if (options.dry_run) {
-    print({.table = has_scene ? planned_table(points) : Table{}}, options.common);
+    print_rows(planned_rows(plan), options.common);
     return ExitStatus::done;
   }
   InterruptGuard guard("interrupted: finished points are kept, --resume goes on with the others");
-  const SweepSummary summary = lab.sweep(points, job);
-  print({.table = summary.points}, options.common);
+  const SweepSummary summary = lab.sweep(plan, job);
+  print_rows(summary.points, options.common);
   context.log.say(fmt::format("{} points done, {} failed, {} left, in {}", summary.done, summary.failed,
                               summary.left, summary.database));
   return summary.failed > 0 ? ExitStatus::some_points_failed : ExitStatus::done;

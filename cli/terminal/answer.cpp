@@ -26,6 +26,23 @@ std::string render_as(const Answer& answer, Format format) {
   return (answer.json ? *answer.json : to_json(answer.table)).dump(2) + "\n";
 }
 
+std::vector<FormatRequest> requests_of(const CommonOptions& options) {
+  return options.formats.empty() ? std::vector<FormatRequest>{FormatRequest{}} : options.formats;
+}
+
+void write_rows(const lab::RowSource& rows, Format format, const lab::TakeText& take) {
+  switch (format) {
+    case Format::table:
+      return write_text(rows, take);
+    case Format::md:
+      return write_markdown(rows, take);
+    case Format::csv:
+      return write_csv(rows, take);
+    case Format::json:
+      return write_json(rows, take);
+  }
+}
+
 }  // namespace
 
 void write_output(std::string_view text) {
@@ -42,14 +59,26 @@ void write_output(std::string_view text) {
 }
 
 void print(const Answer& answer, const CommonOptions& options) {
-  const std::vector<FormatRequest> requests =
-      options.formats.empty() ? std::vector<FormatRequest>{FormatRequest{}} : options.formats;
-  for (const FormatRequest& request : requests) {
+  for (const FormatRequest& request : requests_of(options)) {
     const std::string text = render_as(answer, request.format);
     if (request.file.empty())
       write_output(text);
     else
       lab::write_file(request.file, text);
+  }
+}
+
+void print_rows(const lab::RowSource& rows, const CommonOptions& options) {
+  constexpr std::size_t kBlock = 1 << 16;
+  for (const FormatRequest& request : requests_of(options)) {
+    std::string text;
+    write_rows(rows, request.format, [&](std::string_view piece) {
+      text += piece;
+      if (!request.file.empty() || text.size() < kBlock) return;  // a file appears whole
+      write_output(text);
+      text.clear();
+    });
+    request.file.empty() ? write_output(text) : lab::write_file(request.file, text);
   }
 }
 

@@ -24,4 +24,7 @@ void write_output(std::string_view text);
 /// Writes each requested shape, to standard output or to its file. Throws InputError U010.
 void print(const Answer& answer, const CommonOptions& options);
 
+/// The same of rows that come one after another. Standard output needs no more memory for more of them.
+void print_rows(const lab::RowSource& rows, const CommonOptions& options);
+
 }  // namespace hwsim::cli

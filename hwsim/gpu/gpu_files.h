@@ -22,6 +22,7 @@ class GpuFiles {
  private:
   class Loader;
   std::shared_ptr<const Loader> read_;
+  std::shared_ptr<const GpuConfig> plain_;  ///< without settings; null where something is wrong in the files
 };
 
 }  // namespace hwsim

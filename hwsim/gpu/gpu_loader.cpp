@@ -351,15 +351,48 @@ std::vector<std::string> list_gpus(const std::string& config_dir) {
   return ids;
 }
 
+namespace {
+
+/// Lays settings over a GPU as Loader::set does, without resolving its other keys anew. False where something
+/// is wrong: the loader, which knows what every layer said, finds the words.
+bool lay_over(GpuConfig& gpu, std::span<const Assignment> sets) {
+  std::vector<Diagnostic> problems;
+  const std::vector<Key> keys = keys_of(gpu);
+  for (const Assignment& set : sets) {
+    if (set.group() != "gpu") continue;
+    const Key* key = find_key(keys, std::string_view(set.path).substr(set.path.find('.') + 1));
+    std::optional<TomlValue> value = value_of_assignment(set, problems);
+    if (!key || !value) return false;
+    if (const auto factor = scale_factor(*key, *value)) value = scaled(value_in(key->slot), *factor);
+    if (!assign(*key, *value, {}, problems)) return false;
+    Origin& origin = gpu.origins[std::string(key->info.name)];
+    origin = Origin{};
+    origin.layer = Origin::Layer::command_line;
+  }
+  check_rules(gpu, problems);
+  return problems.empty();
+}
+
+}  // namespace
+
 GpuFiles::GpuFiles(const std::string& id_or_path, std::span<const std::string> overlays,
                    const std::string& config_dir) {
   auto loader = std::make_shared<Loader>(config_dir);
   loader->base(id_or_path);
   for (const std::string& path : overlays) loader->overlay(path);
   read_ = std::move(loader);
+  try {
+    plain_ = std::make_shared<const GpuConfig>(Loader(*read_).finish());
+  } catch (const InputError&) {  // told by `with`, which knows the settings too: they may mend it
+    plain_ = nullptr;
+  }
 }
 
 GpuConfig GpuFiles::with(std::span<const Assignment> sets) const {
+  if (plain_) {
+    GpuConfig gpu = *plain_;
+    if (lay_over(gpu, sets)) return gpu;
+  }
   Loader loader = *read_;
   for (const Assignment& assignment : sets) loader.set(assignment);
   return loader.finish();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 namespace hwsim::lab {
@@ -59,87 +60,148 @@ Cell cell_from_json(const nlohmann::ordered_json& value) {
   return value.get<std::string>();
 }
 
-void append_row(std::string& out, const Table& table, const std::vector<std::vector<std::string>>& cells,
-                const std::vector<size_t>& widths) {
+void append_row(std::string& out, const std::vector<Column>& columns,
+                const std::vector<std::vector<std::string>>& cells, const std::vector<size_t>& widths) {
   size_t height = 1;
   for (const auto& cell : cells) height = std::max(height, cell.size());
   for (size_t line = 0; line < height; ++line) {
     std::string row;
     for (size_t i = 0; i < cells.size(); ++i)
-      row += padded(line < cells[i].size() ? cells[i][line] : "", widths[i], table.columns[i].right) + "  ";
+      row += padded(line < cells[i].size() ? cells[i][line] : "", widths[i], columns[i].right) + "  ";
     row.erase(row.find_last_not_of(' ') + 1);
     out += row + "\n";
   }
+}
+
+/// The lines of each cell.
+std::vector<std::vector<std::string>> wrapped(const std::vector<Cell>& row,
+                                              const std::vector<Column>& columns) {
+  std::vector<std::vector<std::string>> cells;
+  for (size_t i = 0; i < row.size(); ++i) cells.push_back(wrap(text_of(row[i]), columns[i].wrap_columns));
+  return cells;
+}
+
+std::vector<size_t> widths_of(const RowSource& rows) {
+  std::vector<size_t> widths;
+  for (const Column& column : rows.columns) widths.push_back(display_columns(column.title));
+  if (!rows.each) return widths;
+  rows.each([&](const std::vector<Cell>& row) {
+    const auto cells = wrapped(row, rows.columns);
+    for (size_t i = 0; i < cells.size(); ++i)
+      for (const std::string& line : cells[i]) widths[i] = std::max(widths[i], display_columns(line));
+  });
+  return widths;
+}
+
+std::string escaped_for_markdown(std::string text) {
+  for (size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
+  return text;
+}
+
+nlohmann::ordered_json to_json(const std::vector<Cell>& row, const std::vector<Column>& columns) {
+  nlohmann::ordered_json object = nlohmann::ordered_json::object();
+  for (size_t i = 0; i < row.size(); ++i) {
+    auto& value = object[columns[i].id];
+    if (const auto* text = std::get_if<std::string>(&row[i])) value = *text;
+    if (const auto* count = std::get_if<std::uint64_t>(&row[i])) value = *count;
+    if (const auto* real = std::get_if<Real>(&row[i])) value = real->value;
+  }
+  return object;
+}
+
+using Write = void (*)(const RowSource&, const TakeText&);
+std::string written(Write write, const Table& table) {
+  std::string out;
+  write(rows_of(table), [&out](std::string_view text) { out += text; });
+  return out;
 }
 
 }  // namespace
 
 std::string exact(double value) { return fmt::format("{}", value); }
 
-std::string to_text(const Table& table) {
-  std::vector<std::vector<std::vector<std::string>>> rows;
-  std::vector<size_t> widths;
-  for (const Column& column : table.columns) widths.push_back(display_columns(column.title));
-  for (const auto& row : table.rows) {
-    auto& cells = rows.emplace_back();
-    for (size_t i = 0; i < row.size(); ++i) {
-      cells.push_back(wrap(text_of(row[i]), table.columns[i].wrap_columns));
-      for (const std::string& line : cells.back()) widths[i] = std::max(widths[i], display_columns(line));
-    }
-  }
-  std::string out;
+RowSource rows_of(const Table& table) {
+  return {table.columns, [&table](const TakeRow& take) {
+            for (const auto& row : table.rows) take(row);
+          }};
+}
+
+RowSource rows_of(Table&& table) {
+  const auto kept = std::make_shared<const Table>(std::move(table));
+  return {kept->columns, [kept](const TakeRow& take) {
+            for (const auto& row : kept->rows) take(row);
+          }};
+}
+
+Table collected(const RowSource& rows) {
+  Table table{rows.columns, {}};
+  if (rows.each) rows.each([&](const std::vector<Cell>& row) { table.rows.push_back(row); });
+  return table;
+}
+
+void write_text(const RowSource& rows, const TakeText& take) {
+  const std::vector<size_t> widths = widths_of(rows);
   std::vector<std::vector<std::string>> titles, rules;
   for (size_t i = 0; i < widths.size(); ++i) {
-    titles.push_back({table.columns[i].title});
+    titles.push_back({rows.columns[i].title});
     rules.push_back({std::string(widths[i], '-')});
   }
-  append_row(out, table, titles, widths);
-  append_row(out, table, rules, widths);
-  for (const auto& cells : rows) append_row(out, table, cells, widths);
-  return out;
-}
-
-std::string to_csv(const Table& table) {
-  std::string out;
-  for (size_t i = 0; i < table.columns.size(); ++i) out += (i ? "," : "") + csv_of(table.columns[i].id);
-  out += "\r\n";
-  for (const auto& row : table.rows) {
-    for (size_t i = 0; i < row.size(); ++i) out += (i ? "," : "") + csv_of(row[i]);
-    out += "\r\n";
-  }
-  return out;
-}
-
-std::string to_markdown(const Table& table) {
-  const auto escaped = [](std::string text) {
-    for (size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
-    return text;
+  const auto line = [&](const std::vector<std::vector<std::string>>& cells) {
+    std::string out;
+    append_row(out, rows.columns, cells, widths);
+    take(out);
   };
-  std::string out, rule;
-  for (const Column& column : table.columns) {
-    out += "| " + escaped(column.title) + " ";
+  line(titles);
+  line(rules);
+  if (rows.each) rows.each([&](const std::vector<Cell>& row) { line(wrapped(row, rows.columns)); });
+}
+
+void write_csv(const RowSource& rows, const TakeText& take) {
+  std::string header;
+  for (const Column& column : rows.columns) header += (header.empty() ? "" : ",") + csv_of(column.id);
+  take(header + "\r\n");
+  if (!rows.each) return;
+  rows.each([&](const std::vector<Cell>& row) {
+    std::string line;
+    for (size_t i = 0; i < row.size(); ++i) line += (i ? "," : "") + csv_of(row[i]);
+    take(line + "\r\n");
+  });
+}
+
+void write_markdown(const RowSource& rows, const TakeText& take) {
+  std::string titles, rule;
+  for (const Column& column : rows.columns) {
+    titles += "| " + escaped_for_markdown(column.title) + " ";
     rule += column.right ? "| ---: " : "| --- ";
   }
-  out += "|\n" + rule + "|\n";
-  for (const auto& row : table.rows) {
-    for (const Cell& cell : row) out += "| " + escaped(text_of(cell)) + " ";
-    out += "|\n";
-  }
-  return out;
+  take(titles + "|\n" + rule + "|\n");
+  if (!rows.each) return;
+  rows.each([&](const std::vector<Cell>& row) {
+    std::string line;
+    for (const Cell& cell : row) line += "| " + escaped_for_markdown(text_of(cell)) + " ";
+    take(line + "|\n");
+  });
 }
+
+void write_json(const RowSource& rows, const TakeText& take) {
+  bool first = true;
+  if (rows.each)
+    rows.each([&](const std::vector<Cell>& row) {
+      std::string text = to_json(row, rows.columns).dump(2);
+      for (size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 3) text.insert(at + 1, "  ");
+      take((first ? "[\n  " : ",\n  ") + text);
+      first = false;
+    });
+  take(first ? "[]\n" : "\n]\n");
+}
+
+std::string to_text(const Table& table) { return written(write_text, table); }
+std::string to_csv(const Table& table) { return written(write_csv, table); }
+std::string to_markdown(const Table& table) { return written(write_markdown, table); }
 
 nlohmann::ordered_json to_json(const Table& table) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const auto& row : table.rows) {
-    nlohmann::ordered_json object = nlohmann::ordered_json::object();
-    for (size_t i = 0; i < row.size(); ++i) {
-      auto& value = object[table.columns[i].id];
-      if (const auto* text = std::get_if<std::string>(&row[i])) value = *text;
-      if (const auto* count = std::get_if<std::uint64_t>(&row[i])) value = *count;
-      if (const auto* real = std::get_if<Real>(&row[i])) value = real->value;
-    }
-    rows.push_back(std::move(object));
-  }
+  for (const auto& row : table.rows) rows.push_back(to_json(row, table.columns));
   return rows;
 }
 

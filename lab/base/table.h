@@ -1,8 +1,10 @@
 #pragma once
 // One table, four shapes: text, CSV, JSON, Markdown.
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -27,6 +29,24 @@ struct Table {
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows;
 };
+
+using TakeRow = std::function<void(const std::vector<Cell>&)>;
+
+/// A table whose rows come one after another, as often as they are asked for: a million take no memory.
+struct RowSource {
+  std::vector<Column> columns;
+  std::function<void(const TakeRow&)> each;  ///< none: no rows
+};
+RowSource rows_of(const Table& table);  ///< valid as long as the table
+RowSource rows_of(Table&& table);       ///< keeps the table
+Table collected(const RowSource& rows);
+
+/// Takes the text piece by piece.
+using TakeText = std::function<void(std::string_view)>;
+void write_text(const RowSource& rows, const TakeText& take);  ///< asks for the rows twice
+void write_csv(const RowSource& rows, const TakeText& take);
+void write_markdown(const RowSource& rows, const TakeText& take);
+void write_json(const RowSource& rows, const TakeText& take);  ///< as to_json(), indented by two
 
 std::string to_text(const Table& table);
 std::string to_csv(const Table& table);  ///< RFC 4180: one header line, CRLF

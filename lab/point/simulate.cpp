@@ -43,21 +43,27 @@ PointResult Simulator::run(const algos::TechniqueChoice& technique, const GpuCon
       store_.frame(scene_, technique, gpu, {plan_.skip, plan_.images || reference_ != nullptr}, progress);
   point.emulation = frame.emulation;
   point.from_cache = frame.from_cache;
+  if (!frame.in_memory) check_counts(point.emulation->trace);
   const auto start = std::chrono::steady_clock::now();
   time_point(point, plan_);
   point.timing_wall_s = seconds_since(start);
-  check_invariants(point.emulation->trace, point.timing, gpu);
+  check_times(point.emulation->trace, point.timing, gpu);
   if (reference_)
     point.image_error = pipeline::compare(point.emulation->color, reference_->image, &point.flip_map);
   return point;
 }
 
-void check_invariants(const WorkTrace& trace, const FrameTiming& timing, const GpuConfig& gpu) {
+void check_counts(const WorkTrace& trace) {
   std::string violations;
-  for (const PassWork& pass : trace.passes) {
+  for (const PassWork& pass : trace.passes)
     for (const CounterViolation& v : algos::broken_laws(total(pass)))
       violations += fmt::format("\n  pass {}: {} ({} against {})", pass.name, v.law, v.left, v.right);
-  }
+  if (!violations.empty())
+    throw InternalError(fmt::format("technique {} violates invariants:{}", trace.technique, violations));
+}
+
+void check_times(const WorkTrace& trace, const FrameTiming& timing, const GpuConfig& gpu) {
+  std::string violations;
   for (const std::string& sentence : check_timing(timing, trace, gpu)) violations += "\n  " + sentence;
   if (!violations.empty())
     throw InternalError(

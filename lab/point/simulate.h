@@ -47,7 +47,9 @@ class Simulator {
   TraceStore& store_;
 };
 
-/// The invariants of every run; throws InternalError with all that are violated.
-void check_invariants(const WorkTrace& trace, const FrameTiming& timing, const GpuConfig& gpu);
+/// The invariants of every run, once for each trace and for each timing; throw InternalError with all that
+/// are violated.
+void check_counts(const WorkTrace& trace);
+void check_times(const WorkTrace& trace, const FrameTiming& timing, const GpuConfig& gpu);
 
 }  // namespace hwsim::lab

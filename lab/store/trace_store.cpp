@@ -120,11 +120,12 @@ EmulatedFrame TraceStore::frame(SceneView& scene, const algos::TechniqueChoice& 
                                 const GpuConfig& gpu, const FrameNeeds& needs,
                                 const ProgressFunction& progress) {
   std::string key = key_of(work_text(scene, technique, gpu, needs));
-  EmulatedFrame result{in_memory(key, needs.image), true};
+  EmulatedFrame result{in_memory(key, needs.image), true, true};
   if (result.emulation) return result;
+  result.in_memory = false;
   if (options_.disk) result.emulation = on_disk(key, scene, needs.image);
   if (!result.emulation) {
-    result = {emulate(scene, technique, gpu, needs, progress), false};
+    result = {emulate(scene, technique, gpu, needs, progress), false, false};
     key = key_of(work_text(scene, technique, gpu, needs));  // the file may have changed before it was loaded
     if (options_.disk) cache_.write(frame_path(key), encode_frame(key, *result.emulation), observer_);
     if (options_.disk && needs.image)
@@ -132,6 +133,11 @@ EmulatedFrame TraceStore::frame(SceneView& scene, const algos::TechniqueChoice& 
   }
   keep(key, result.emulation);
   return result;
+}
+
+bool TraceStore::holds(const SceneView& scene, const algos::TechniqueChoice& technique, const GpuConfig& gpu,
+                       const FrameNeeds& needs) const {
+  return in_memory(key_of(work_text(scene, technique, gpu, needs)), needs.image) != nullptr;
 }
 
 std::shared_ptr<const Emulation> TraceStore::in_memory(const std::string& key, bool image) const {

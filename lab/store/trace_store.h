@@ -21,6 +21,7 @@ struct FrameNeeds {
 struct EmulatedFrame {
   std::shared_ptr<const pipeline::Emulation> emulation;  ///< wall_s: what getting it took this time
   bool from_cache = false;  ///< whether it was kept by this process or on the disk
+  bool in_memory = false;   ///< this process has had it before
 };
 
 class TraceStore {
@@ -36,6 +37,10 @@ class TraceStore {
   /// Only features and limits of `gpu` matter. Throws InputError where the technique cannot run on it.
   EmulatedFrame frame(SceneView& scene, const algos::TechniqueChoice& technique, const GpuConfig& gpu,
                       const FrameNeeds& needs, const ProgressFunction& progress);
+
+  /// Whether the frame is in memory.
+  bool holds(const SceneView& scene, const algos::TechniqueChoice& technique, const GpuConfig& gpu,
+             const FrameNeeds& needs) const;
 
   /// All that the work of a frame depends on, but the program itself, as text.
   static std::string work_text(const SceneView& scene, const algos::TechniqueChoice& technique,

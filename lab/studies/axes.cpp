@@ -124,50 +124,59 @@ int parse_sample(const std::string& text) {
   fail_usage("U019", "--sample is `" + text + "`, must be lhs:POINTS", "--sample lhs:64");
 }
 
-std::vector<std::vector<Assignment>> combine(const std::vector<Axis>& axes, Combine how) {
-  size_t count = 1;
-  for (const Axis& axis : axes) {
+PointSettings::PointSettings(std::vector<Axis> axes, Combine how)
+    : axes_(std::move(axes)), how_(how), count_(1) {
+  for (const Axis& axis : axes_) {
     if (axis.values.empty())
       fail_usage("U019", "the range of `" + axis.path + "` has no count", "lo..hi:n, or --sample lhs:N");
-    count = how == Combine::grid ? count * axis.values.size() : axis.values.size();
-    if (count > kMaxPoints) fail_usage("U019", fmt::format("the axes span more than {} points", kMaxPoints));
+    count_ = how == Combine::grid ? count_ * axis.values.size() : axis.values.size();
+    if (count_ > kMaxPoints) fail_usage("U019", fmt::format("the axes span more than {} points", kMaxPoints));
   }
-  if (how == Combine::zip)
-    for (const Axis& axis : axes)
-      if (axis.values.size() != axes.front().values.size())
-        fail_usage("U019",
-                   fmt::format("--zip takes lists of one length: `{}` has {} values, `{}` {}",
-                               axes.front().path, axes.front().values.size(), axis.path, axis.values.size()));
-  std::vector<std::vector<Assignment>> points(count);
-  for (size_t i = 0; i < count; ++i) {
-    size_t rest = i, stride = count;
-    for (const Axis& axis : axes) {
-      stride /= how == Combine::grid ? axis.values.size() : 1;
-      const size_t index = how == Combine::zip ? i : rest / stride;
-      if (how == Combine::grid) rest %= stride;
-      points[i].push_back({axis.path, axis.values[index]});
-    }
+  if (how != Combine::zip) return;
+  for (const Axis& axis : axes_)
+    if (axis.values.size() != axes_.front().values.size())
+      fail_usage("U019",
+                 fmt::format("--zip takes lists of one length: `{}` has {} values, `{}` {}",
+                             axes_.front().path, axes_.front().values.size(), axis.path, axis.values.size()));
+}
+
+PointSettings::PointSettings(std::vector<Axis> axes, int points, std::uint64_t seed)
+    : axes_(std::move(axes)), count_(static_cast<std::size_t>(points)) {
+  Random random(seed);
+  for ([[maybe_unused]] const Axis& axis : axes_) {
+    const std::vector<int> strata = random.permutation(points);
+    std::vector<double>& shares = shares_.emplace_back();
+    for (const int stratum : strata) shares.push_back((stratum + random.real()) / points);
   }
+}
+
+std::size_t PointSettings::size() const { return count_ > 0 ? count_ : lists_.size(); }
+
+std::vector<std::vector<Assignment>> PointSettings::all() const {
+  std::vector<std::vector<Assignment>> points;
+  for (std::size_t i = 0; i < size(); ++i) points.push_back((*this)[i]);
   return points;
 }
 
-std::vector<std::vector<Assignment>> latin_hypercube(const std::vector<Axis>& axes, int points,
-                                                     std::uint64_t seed) {
-  Random random(seed);
-  std::vector<std::vector<Assignment>> result(static_cast<size_t>(points));
-  for (const Axis& axis : axes) {
-    const std::vector<int> strata = random.permutation(points);
-    for (size_t i = 0; i < result.size(); ++i) {
-      const double share = (strata[i] + random.real()) / points;
-      const size_t count = axis.values.size();
-      result[i].push_back(
-          {axis.path,
-           axis.range
-               ? exact(at_share(*axis.range, share))
-               : axis.values[std::min(count - 1, static_cast<size_t>(share * static_cast<double>(count)))]});
+std::vector<Assignment> PointSettings::operator[](std::size_t point) const {
+  if (count_ == 0) return lists_.at(point);
+  std::vector<Assignment> settings;
+  std::size_t rest = point, stride = count_;
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    const Axis& axis = axes_[a];
+    const std::size_t values = axis.values.size();
+    if (!shares_.empty()) {
+      const double share = shares_[a][point];
+      const auto index = static_cast<std::size_t>(share * static_cast<double>(values));
+      settings.push_back({axis.path, axis.range ? exact(at_share(*axis.range, share))
+                                                : axis.values[std::min(values - 1, index)]});
+      continue;
     }
+    if (how_ == Combine::grid) stride /= values;
+    settings.push_back({axis.path, axis.values[how_ == Combine::zip ? point : rest / stride]});
+    if (how_ == Combine::grid) rest %= stride;
   }
-  return result;
+  return settings;
 }
 
 }  // namespace hwsim::lab

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hwsim/config/toml_value.h"
@@ -28,13 +29,31 @@ int parse_sample(const std::string& text);
 
 enum class Combine { grid, zip };
 
-/// One list of settings a point, the last axis varying fastest; one empty list when there are no axes. Throws
-/// InputError U019 for a range without a count and for lists of different length that are to be zipped.
-std::vector<std::vector<Assignment>> combine(const std::vector<Axis>& axes, Combine how);
+/// One list of settings a point, each made when it is asked for: a million points take no memory.
+class PointSettings {
+ public:
+  /// One point without settings.
+  PointSettings() = default;
+  /// One point for each list, as it is.
+  explicit PointSettings(std::vector<std::vector<Assignment>> lists) : lists_(std::move(lists)) {}
+  /// The points that axes span, the last one varying fastest. Throws InputError U019 for a range without a
+  /// count and for lists of different length that are to be zipped.
+  PointSettings(std::vector<Axis> axes, Combine how);
+  /// Latin hypercube (McKay, Beckman, Conover 1979): each axis is cut into `points` strata, each stratum is
+  /// used once. It keeps a number for each axis of a point.
+  PointSettings(std::vector<Axis> axes, int points, std::uint64_t seed);
 
-/// Latin hypercube (McKay, Beckman, Conover 1979): each axis is cut into `points` strata, each stratum is
-/// used once.
-std::vector<std::vector<Assignment>> latin_hypercube(const std::vector<Axis>& axes, int points,
-                                                     std::uint64_t seed);
+  std::size_t size() const;
+  std::vector<Assignment> operator[](std::size_t point) const;
+  std::vector<std::vector<Assignment>> all() const;
+
+ private:
+  std::vector<std::vector<Assignment>> lists_ = std::vector<std::vector<Assignment>>(1);
+  std::vector<Axis> axes_;
+  Combine how_ = Combine::grid;
+  std::size_t count_ = 0;  ///< how many points; 0: they are in lists_
+  std::vector<std::vector<double>>
+      shares_;  ///< by axis and point: where in the axis, 0 to 1; only when sampled
+};
 
 }  // namespace hwsim::lab

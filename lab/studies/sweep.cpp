@@ -2,107 +2,111 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <chrono>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
+#include <utility>
 
-#include "hwsim/base/content_hash.h"
 #include "lab/base/build_info.h"
 #include "lab/base/messages.h"
 #include "lab/base/text.h"
-#include "lab/request/run_file.h"
 
 namespace hwsim::lab {
 namespace {
 
-constexpr std::size_t kMaxProblems = 20;
-
-std::string point_id(const PlannedPoint& planned) {
-  const std::string text =
-      fmt::format("model {}|{}|{}|{} {}", kModelVersion, planned.work, content_hash(*planned.gpu),
-                  engine_name(planned.plan->engine), planned.plan->timing.detailed_sample_ratio);
-  ContentHash hash;
-  hash.add({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-  return hash.hex().substr(0, 16);
-}
-
-void plan_points(const std::shared_ptr<const RunPlan>& plan, const std::vector<Assignment>& settings,
-                 Session& session, std::vector<PlannedPoint>& points) {
-  for (const algos::TechniqueChoice& technique : plan->techniques)
-    for (const GpuConfig& gpu : plan->gpus) {
-      PlannedPoint planned{{}, plan, &technique, &gpu, &session.scene(plan->view), {}};
-      planned.work = TraceStore::work_text(*planned.scene, technique, gpu, {plan->skip, false});
-      planned.point = {.id = point_id(planned),
-                       .number = static_cast<std::int64_t>(points.size()) + 1,
-                       .scene = planned.scene->summary().name,
-                       .technique = technique_text(technique),
-                       .gpu = gpu.id,
-                       .engine = std::string(engine_name(plan->engine)),
-                       .resolution = plan->view.resolution,
-                       .settings = settings,
-                       .run_file = run_file_text(*plan, technique, "gpu.toml"),
-                       .gpu_file = show(gpu, false)};
-      points.push_back(std::move(planned));
-    }
-}
-
-std::shared_ptr<const RunPlan> plan_with(const Request& base, const std::vector<Assignment>& settings,
-                                         ConfigFiles& files) {
-  std::vector<Diagnostic> problems;
-  Request request = base;
-  apply(request, settings, problems);
-  auto plan = std::make_shared<RunPlan>(make_plan(request, files, problems));
-  plan->images = false;
-  if (!problems.empty()) throw InputError(problems);
-  return plan;
-}
-
-/// Points that share an emulation follow each other.
-std::vector<std::size_t> order_of(const std::vector<PlannedPoint>& points) {
-  std::vector<std::size_t> order(points.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::map<std::string, std::size_t> first;
-  for (std::size_t i = 0; i < points.size(); ++i) first.emplace(points[i].work, i);
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return first.at(points[i].work); });
-  return order;
-}
-
 void warn_of_failure(const PlannedPoint& planned, const InputError& error, Observer& observer) {
   for (Diagnostic note : error.diagnostics()) {
     note.severity = Severity::warning;
-    note.notes.push_back(
-        fmt::format("point {}: {} on {}", planned.point.number, planned.point.technique, planned.point.gpu));
+    note.notes.push_back(fmt::format("point {}: {} on {}", planned.number, technique_text(*planned.technique),
+                                     planned.gpu.id));
     observer.report(note);
   }
 }
 
-void run_point(const PlannedPoint& planned, SweepStore& store, Session& session) {
-  store.start(planned.point.id);
-  try {
-    Simulator simulator(*planned.plan, *planned.scene, nullptr, session.traces());
-    store.finish(planned.point.id, simulator.run(*planned.technique, *planned.gpu, nullptr));
-  } catch (const InputError& error) {
-    if (error.diagnostics().front().code == "U021") throw;  // the database itself
-    store.fail(planned.point.id, error.what());
-    warn_of_failure(planned, error, session.observer());
+/// Results on their way to the database, written together: a transaction takes as long as a point. The
+/// database is locked only while they are written.
+class ResultBatch {
+ public:
+  explicit ResultBatch(SweepStore& store) : store_(store) {}
+  ~ResultBatch() {
+    try {
+      write();
+    } catch (const InputError&) {  // the database failed before, and that was told
+    }
   }
-}
+  ResultBatch(const ResultBatch&) = delete;
+  ResultBatch& operator=(const ResultBatch&) = delete;
 
-void run_points(const std::vector<PlannedPoint>& points, const SweepJob& job, SweepStore& store,
-                Session& session) {
-  std::vector<SweepPoint> rows;
-  for (const PlannedPoint& planned : points) rows.push_back(planned.point);
+  void add(const std::string& id, PointResult result) {
+    if (results_.empty()) oldest_ = Clock::now();
+    result.technique = nullptr;  // those of a plan that is gone by then
+    result.gpu = nullptr;
+    results_.push_back({id, std::move(result)});
+    if (Clock::now() - oldest_ >= kLongest) write();
+  }
+  void write() {
+    if (!results_.empty()) store_.finish(std::exchange(results_, {}));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kLongest{200};
+  SweepStore& store_;
+  std::vector<FinishedPoint> results_;
+  Clock::time_point oldest_;
+};
+
+class SweepRunner {
+ public:
+  SweepRunner(SweepStore& store, Session& session) : store_(store), session_(session), batch_(store) {}
+
+  void run(const PlannedPoint& planned) {
+    if (store_.state_of(planned.id) == "done") return;
+    if (!is_quick(planned)) {
+      batch_.write();
+      store_.start(planned.id);
+    }
+    try {
+      Simulator simulator(*planned.plan, *planned.scene, nullptr, session_.traces());
+      batch_.add(planned.id, simulator.run(*planned.technique, planned.gpu, nullptr));
+    } catch (const InputError& error) {
+      if (error.diagnostics().front().code == "U021") throw;  // the database itself
+      store_.fail(planned.id, error.what());
+      warn_of_failure(planned, error, session_.observer());
+    }
+  }
+  void end() { batch_.write(); }
+
+ private:
+  /// A point that is only timed takes less than its transaction would.
+  bool is_quick(const PlannedPoint& planned) const {
+    return planned.plan->engine != Engine::detailed &&
+           session_.traces().holds(*planned.scene, *planned.technique, planned.gpu,
+                                   {planned.plan->skip, false});
+  }
+
+  SweepStore& store_;
+  Session& session_;
+  ResultBatch batch_;
+};
+
+void run_points(const SweepPlan& plan, const SweepJob& job, SweepStore& store, Session& session) {
   store.remember("command_line", job.command_line);
   store.remember("version", std::string(build_info().version));
   store.remember("model_version", std::to_string(kModelVersion));
-  store.add(rows);
-  StageProgress progress(session.observer(), points.size());
-  for (const std::size_t i : order_of(points)) {
-    const bool mine = i % job.shard.count == job.shard.index;
-    if (mine && store.state_of(points[i].point.id) != "done") run_point(points[i], store, session);
-    progress.next(points[i].point.technique + " on " + points[i].point.gpu);
+  store.add(plan.size(), [&plan](std::size_t i) { return plan.row(i); });
+  StageProgress progress(session.observer(), plan.size());
+  SweepRunner runner(store, session);
+  for (const std::size_t i : plan.order()) {
+    if (i % job.shard.count != job.shard.index) {
+      progress.next("a point of another shard");
+      continue;
+    }
+    const PlannedPoint planned = plan[i];
+    runner.run(planned);
+    progress.next(point_name(*planned.technique, planned.gpu));
   }
+  runner.end();
 }
 
 SweepAccess access_of(const SweepJob& job, bool has_points) {
@@ -126,41 +130,13 @@ Shard parse_shard(const std::string& text) {
   fail_usage("U003", "--shard is `" + text + "`, must be I/N with I from 1 to N", "--shard 1/4");
 }
 
-std::vector<PlannedPoint> plan_sweep(const Request& request,
-                                     const std::vector<std::vector<Assignment>>& settings, Session& session) {
-  std::vector<PlannedPoint> points;
-  std::vector<Diagnostic> problems;
-  for (const std::vector<Assignment>& point : settings) try {
-      plan_points(plan_with(request, point, session.files()), point, session, points);
-    } catch (const InputError& error) {
-      append(problems, error);
-      if (problems.size() >= kMaxProblems) break;
-    }
-  if (!problems.empty()) throw InputError(problems);
-  return points;
-}
-
-Table planned_table(const std::vector<PlannedPoint>& points) {
-  Table table{{{"number", "#", true}, {"point_id", "point"}, {"technique", "technique"}, {"gpu", "GPU"}}, {}};
-  if (points.empty()) return table;
-  for (const Assignment& set : points.front().point.settings)
-    table.columns.push_back({set.path, set.path, true});
-  for (const PlannedPoint& planned : points) {
-    const SweepPoint& p = planned.point;
-    auto& row = table.rows.emplace_back(
-        std::vector<Cell>{static_cast<std::uint64_t>(p.number), p.id, p.technique, p.gpu});
-    for (const Assignment& set : p.settings) row.push_back(set.value);
-  }
-  return table;
-}
-
 nlohmann::ordered_json to_json(const SweepSummary& summary) {
   return {{"schema_version", kResultSchemaVersion},
           {"database", summary.database},
           {"done", summary.done},
           {"failed", summary.failed},
           {"left", summary.left},
-          {"points", to_json(summary.points)}};
+          {"points", to_json(collected(summary.points))}};
 }
 
 SweepSummary sweep_summary_from_json(const nlohmann::ordered_json& json) {
@@ -168,16 +144,22 @@ SweepSummary sweep_summary_from_json(const nlohmann::ordered_json& json) {
           .done = json.at("done").get<std::size_t>(),
           .failed = json.at("failed").get<std::size_t>(),
           .left = json.at("left").get<std::size_t>(),
-          .points = table_from_json(json.at("points"))};
+          .points = rows_of(table_from_json(json.at("points")))};
 }
 
-SweepSummary run_sweep(const std::vector<PlannedPoint>& points, const SweepJob& job, Session& session) {
-  SweepStore store(job.database, access_of(job, !points.empty()));
-  for (const std::string& other : job.merge)
-    session.observer().say(fmt::format("merged {} points of {}", store.merge(other), other));
-  if (!points.empty()) run_points(points, job, store, session);
-  return {job.database, store.count("done"), store.count("failed"),
-          store.count("pending") + store.count("running") + store.count("interrupted"), store.points()};
+SweepSummary run_sweep(const SweepPlan& plan, const SweepJob& job, Session& session) {
+  SweepSummary summary{.database = job.database};
+  {
+    SweepStore store(job.database, access_of(job, plan.size() > 0));
+    for (const std::string& other : job.merge)
+      session.observer().say(fmt::format("merged {} points of {}", store.merge(other), other));
+    if (plan.size() > 0) run_points(plan, job, store, session);
+    const std::map<std::string, std::size_t> states = store.states();
+    for (const auto& [state, count] : states)
+      (state == "done" ? summary.done : state == "failed" ? summary.failed : summary.left) += count;
+  }
+  summary.points = sweep_rows(job.database);
+  return summary;
 }
 
 }  // namespace hwsim::lab

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "algos/rooms.h"
@@ -28,6 +29,7 @@ SweepStore::SweepStore(const std::string& path, SweepAccess access)
 SweepStore::~SweepStore() {
   // One file, with nothing beside it, can be copied and read anywhere. Where another process still uses the
   // database, that one closes it.
+  statements_.clear();
   if (writes_) database_.try_execute("PRAGMA busy_timeout=0; PRAGMA journal_mode=DELETE");
 }
 
@@ -38,7 +40,14 @@ void SweepStore::remember(const std::string& key, const std::string& value) {
       .run();
 }
 
-void SweepStore::add(const std::vector<SweepPoint>& points) {
+Database::Statement& SweepStore::prepared(const char* sql) {
+  const auto found = statements_.find(sql);
+  return found != statements_.end()
+             ? found->second
+             : statements_.emplace(sql, Database::Statement(database_, sql)).first->second;
+}
+
+void SweepStore::add(std::size_t count, const std::function<SweepPoint(std::size_t)>& point_at) {
   Database::Transaction transaction(database_);
   database_.execute("UPDATE point SET state = 'interrupted' WHERE state = 'running'");
   Database::Statement insert(database_,
@@ -46,7 +55,8 @@ void SweepStore::add(const std::vector<SweepPoint>& points) {
                              "height_px, settings, run_file, gpu_file, state) VALUES "
                              "(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 'pending') ON CONFLICT (id) DO UPDATE SET "
                              "number = excluded.number");
-  for (const SweepPoint& point : points)
+  for (std::size_t i = 0; i < count; ++i) {
+    const SweepPoint point = point_at(i);
     insert.bind(1, point.id)
         .bind(2, point.number)
         .bind(3, point.scene)
@@ -59,17 +69,19 @@ void SweepStore::add(const std::vector<SweepPoint>& points) {
         .bind(10, point.run_file)
         .bind(11, point.gpu_file)
         .run();
+  }
   transaction.commit();
 }
 
 std::string SweepStore::state_of(const std::string& id) {
-  Database::Statement select(database_, "SELECT state FROM point WHERE id = ?");
-  select.bind(1, id);
-  return select.step() ? select.text(0) : "";
+  Database::Statement& select = prepared("SELECT state FROM point WHERE id = ?");
+  std::string state = select.bind(1, id).step() ? select.text(0) : "";
+  select.reset();  // or it would keep its view of the database
+  return state;
 }
 
 void SweepStore::set_state(const std::string& id, const std::string& state, const std::string& message) {
-  Database::Statement(database_, "UPDATE point SET state = ?, message = ? WHERE id = ?")
+  prepared("UPDATE point SET state = ?, message = ? WHERE id = ?")
       .bind(1, state)
       .bind(2, message)
       .bind(3, id)
@@ -79,16 +91,21 @@ void SweepStore::set_state(const std::string& id, const std::string& state, cons
 void SweepStore::start(const std::string& id) { set_state(id, "running", ""); }
 void SweepStore::fail(const std::string& id, const std::string& message) { set_state(id, "failed", message); }
 
+void SweepStore::finish(std::span<const FinishedPoint> points) {
+  Database::Transaction transaction(database_);
+  for (const FinishedPoint& point : points) finish(point.id, point.result);
+  transaction.commit();
+}
+
 void SweepStore::finish(const std::string& id, const PointResult& result) {
   const FrameTiming& timing = result.timing;
   const auto dram_mb = [](const StreamBytes& bytes) {
     return (bytes.total_read() + bytes.total_write()) / kBytesPerMb;
   };
-  Database::Transaction transaction(database_);
-  Database::Statement update(database_,
-                             "UPDATE point SET state = 'done', message = '', time_ms = ?, lo_ms = ?, hi_ms "
-                             "= ?, support = ?, limiter = ?, dram_mb = ?, memory_mib = ?, shaded_samples = "
-                             "?, from_cache = ? WHERE id = ?");
+  Database::Statement& update = prepared(
+      "UPDATE point SET state = 'done', message = '', time_ms = ?, lo_ms = ?, hi_ms = ?, support = ?, "
+      "limiter = "
+      "?, dram_mb = ?, memory_mib = ?, shaded_samples = ?, from_cache = ? WHERE id = ?");
   update.bind(1, timing.time_ns / kNsPerMs).bind_null(2).bind_null(3).bind(4, support_name(timing.support));
   if (timing.interval_ns)
     update.bind(2, (*timing.interval_ns)[0] / kNsPerMs).bind(3, (*timing.interval_ns)[1] / kNsPerMs);
@@ -99,8 +116,8 @@ void SweepStore::finish(const std::string& id, const PointResult& result) {
       .bind(9, std::int64_t{result.from_cache})
       .bind(10, id)
       .run();
-  Database::Statement(database_, "DELETE FROM pass WHERE point_id = ?").bind(1, id).run();
-  Database::Statement insert(database_, "INSERT INTO pass VALUES (?, ?, ?, ?, ?, ?, ?)");
+  prepared("DELETE FROM pass WHERE point_id = ?").bind(1, id).run();
+  Database::Statement& insert = prepared("INSERT INTO pass VALUES (?, ?, ?, ?, ?, ?, ?)");
   std::int64_t ordinal = 0;
   for (const PassTiming& pass : timing.passes)
     insert.bind(1, id)
@@ -111,7 +128,6 @@ void SweepStore::finish(const std::string& id, const PointResult& result) {
         .bind(6, unit_name(pass.limiter))
         .bind(7, dram_mb(pass.dram_bytes))
         .run();
-  transaction.commit();
 }
 
 namespace {
@@ -144,7 +160,7 @@ class RowCopier {
 
 std::size_t SweepStore::merge(const std::string& path) {
   Database other = open_sweep(path, SweepAccess::look);
-  const std::size_t before = count("done");
+  std::size_t taken = 0;
   Database::Transaction transaction(database_);
   RowCopier points(other, database_, "point",
                    {"id",       "number",     "scene",          "technique", "gpu",      "engine",
@@ -161,15 +177,17 @@ std::size_t SweepStore::merge(const std::string& path) {
     Database::Statement(database_, "DELETE FROM point WHERE id = ?").bind(1, id).run();
     points.copy(id);
     passes.copy(id);
+    if (all.text(1) == "done") ++taken;
   }
   transaction.commit();
-  return count("done") - before;
+  return taken;
 }
 
-std::size_t SweepStore::count(const std::string& state) {
-  Database::Statement select(database_, "SELECT count(*) FROM point WHERE state = ?");
-  select.bind(1, state).step();
-  return static_cast<std::size_t>(select.integer(0));
+std::map<std::string, std::size_t> SweepStore::states() {
+  std::map<std::string, std::size_t> counts;
+  Database::Statement select(database_, "SELECT state, count(*) FROM point GROUP BY state");
+  while (select.step()) counts[select.text(0)] = static_cast<std::size_t>(select.integer(1));
+  return counts;
 }
 
 namespace {
@@ -234,39 +252,55 @@ std::vector<Cell> point_row(const Database::Statement& point) {
   return row;
 }
 
-/// A column for everything that is varied at some point, in order of appearance.
-void insert_settings(Table& table, const std::vector<nlohmann::ordered_json>& settings) {
+nlohmann::ordered_json settings_of(const Database::Statement& point, const std::string& path) {
+  auto settings = nlohmann::ordered_json::parse(point.text(kSettings), nullptr, false);
+  if (!settings.is_object())
+    hwsim::lab::fail("U021", "`" + path + "` is damaged: the settings of a point are no object");
+  return settings;
+}
+
+/// Everything that is varied at some point, in order of appearance.
+std::vector<std::string> varied_paths(Database& database, const std::string& path) {
   std::vector<std::string> varied;
-  for (const nlohmann::ordered_json& point : settings)
-    for (const auto& [path, value] : point.items())
-      if (std::find(varied.begin(), varied.end(), path) == varied.end()) varied.push_back(path);
-  for (size_t k = 0; k < varied.size(); ++k) {
-    const std::ptrdiff_t at = kSettingsPlace + static_cast<std::ptrdiff_t>(k);
-    table.columns.insert(table.columns.begin() + at, {varied[k], varied[k], true});
-    for (size_t i = 0; i < table.rows.size(); ++i) {
-      const auto found = settings[i].find(varied[k]);
-      if (found == settings[i].end())
-        table.rows[i].emplace(table.rows[i].begin() + at, NotApplicable{});
-      else
-        table.rows[i].emplace(table.rows[i].begin() + at, found->get<std::string>());
-    }
+  Database::Statement select(database, kSelectPoints);
+  while (select.step()) {
+    const nlohmann::ordered_json settings = settings_of(select, path);
+    for (const auto& [key, value] : settings.items())
+      if (std::ranges::find(varied, key) == varied.end()) varied.push_back(key);
   }
+  return varied;
 }
 
 }  // namespace
 
-Table SweepStore::points() {
-  Table table{point_columns(), {}};
-  std::vector<nlohmann::ordered_json> settings;
-  Database::Statement select(database_, kSelectPoints);
-  while (select.step()) {
-    table.rows.push_back(point_row(select));
-    settings.push_back(nlohmann::ordered_json::parse(select.text(kSettings), nullptr, false));
-    if (!settings.back().is_object())
-      hwsim::lab::fail("U021", "`" + path_ + "` is damaged: the settings of a point are no object");
-  }
-  insert_settings(table, settings);
-  return table;
+RowSource SweepStore::points() {
+  const std::vector<std::string> varied = varied_paths(database_, path_);
+  RowSource rows{point_columns(), {}};
+  for (std::size_t k = 0; k < varied.size(); ++k)
+    rows.columns.insert(rows.columns.begin() + kSettingsPlace + static_cast<std::ptrdiff_t>(k),
+                        {varied[k], varied[k], true});
+  rows.each = [this, varied](const TakeRow& take) {
+    Database::Statement select(database_, kSelectPoints);
+    while (select.step()) {
+      const nlohmann::ordered_json settings = settings_of(select, path_);
+      std::vector<Cell> cells;
+      for (const std::string& key : varied) {
+        const auto found = settings.find(key);
+        cells.push_back(found == settings.end() ? Cell{NotApplicable{}} : Cell{found->get<std::string>()});
+      }
+      std::vector<Cell> row = point_row(select);
+      row.insert(row.begin() + kSettingsPlace, cells.begin(), cells.end());
+      take(row);
+    }
+  };
+  return rows;
+}
+
+RowSource sweep_rows(const std::string& path) {
+  const auto store = std::make_shared<SweepStore>(path, SweepAccess::look);
+  RowSource rows = store->points();
+  rows.each = [store, each = rows.each](const TakeRow& take) { each(take); };
+  return rows;
 }
 
 }  // namespace hwsim::lab

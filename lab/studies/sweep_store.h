@@ -1,6 +1,9 @@
 #pragma once
-// The points of a sweep in one SQLite database: all of them are there before the first one runs, each result
-// is one transaction.
+// The points of a sweep in one SQLite database: all of them are there before the first one runs, and results
+// are there whole or not at all.
+#include <functional>
+#include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +23,11 @@ struct SweepPoint {
   std::string run_file, gpu_file;    ///< everything that was decided, as TOML
 };
 
+struct FinishedPoint {
+  std::string id;
+  PointResult result;  ///< its technique and its GPU are not looked at
+};
+
 class SweepStore {
  public:
   /// Throws what `open_sweep` throws.
@@ -29,28 +37,37 @@ class SweepStore {
   SweepStore& operator=(const SweepStore&) = delete;
 
   /// Points that are new become pending; those that a killed process left running become interrupted.
-  void add(const std::vector<SweepPoint>& points);
+  void add(std::size_t count, const std::function<SweepPoint(std::size_t)>& point_at);
   void remember(const std::string& key, const std::string& value);
 
   std::string state_of(const std::string& id);
   void start(const std::string& id);
-  void finish(const std::string& id, const PointResult& result);
+  /// All in one transaction.
+  void finish(std::span<const FinishedPoint> points);
   void fail(const std::string& id, const std::string& message);
 
   /// Takes over the finished points of another sweep's database, which is only read. Returns how many were
   /// new.
   std::size_t merge(const std::string& path);
 
-  /// Every point, in order: CSV, and what follows from it.
-  Table points();
-  std::size_t count(const std::string& state);
+  /// Every point, in order: CSV, and what follows from it. Valid as long as the store.
+  RowSource points();
+  /// How many points are in each state.
+  std::map<std::string, std::size_t> states();
 
  private:
   void set_state(const std::string& id, const std::string& state, const std::string& message);
+  void finish(const std::string& id, const PointResult& result);
+  /// The statement, compiled once.
+  Database::Statement& prepared(const char* sql);
 
   std::string path_;
   bool writes_;
   Database database_;
+  std::map<const char*, Database::Statement> statements_;
 };
+
+/// The points of a database, which is only read, and opened anew each time. Throws what `open_sweep` throws.
+RowSource sweep_rows(const std::string& path);
 
 }  // namespace hwsim::lab

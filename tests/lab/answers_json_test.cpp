@@ -100,16 +100,16 @@ TEST(AnswersJson, RankingComesBackWithItsTable) {
 TEST(AnswersJson, SweepSummaryComesBackWithItsPoints) {
   const Workbench bench;
   Lab lab;
-  const std::vector<PlannedPoint> points = lab.plan_sweep(
-      bench.request({"none", "msaa4x"}),
-      {{parse_assignment("gpu.core_clock_mhz=800")}, {parse_assignment("gpu.core_clock_mhz=1600")}});
+  const SweepPlan points = lab.plan_sweep(bench.request({"none", "msaa4x"}),
+                                          {parse_axes({"gpu.core_clock_mhz=800,1600"}), Combine::grid});
   const SweepSummary summary =
       lab.sweep(points, {.database = bench.path("sweep.sqlite"), .shard = parse_shard("1/2")});
   const Json json = to_json(summary);
   const SweepSummary again = sweep_summary_from_json(through_text(json));
   EXPECT_EQ(to_json(again), json);
-  EXPECT_EQ(to_csv(again.points), to_csv(summary.points)) << "points that are not done have empty cells";
-  EXPECT_EQ(again.points.rows.size(), 4u);
+  EXPECT_EQ(to_csv(collected(again.points)), to_csv(collected(summary.points)))
+      << "points that are not done have empty cells";
+  EXPECT_EQ(collected(again.points).rows.size(), 4u);
   EXPECT_EQ(again.done, 2u);
   EXPECT_EQ(again.left, 2u);
   for (const char* key : {"database", "done", "failed", "left", "points"}) {

@@ -14,20 +14,33 @@ namespace {
 
 using Points = std::vector<std::vector<Assignment>>;
 
+Points all(const PointSettings& settings) {
+  Points points;
+  for (std::size_t i = 0; i < settings.size(); ++i) points.push_back(settings[i]);
+  return points;
+}
+
 double number(const Assignment& set) { return std::stod(set.value); }
 
 TEST(Axes, TheLastAxisVariesFastestInAGrid) {
-  const Points points = combine(parse_axes({"gpu.a=1,2", "gpu.b=x,y,z"}), Combine::grid);
+  const Points points = all({parse_axes({"gpu.a=1,2", "gpu.b=x,y,z"}), Combine::grid});
   std::vector<std::string> texts;
   for (const auto& point : points) texts.push_back(point[0].value + point[1].value);
   EXPECT_EQ(texts, (std::vector<std::string>{"1x", "1y", "1z", "2x", "2y", "2z"}));
 }
 
 TEST(Axes, ZippedListsGoTogetherAndMustBeOfOneLength) {
-  const Points points = combine(parse_axes({"gpu.a=1,2", "gpu.b=x,y"}), Combine::zip);
+  const Points points = all({parse_axes({"gpu.a=1,2", "gpu.b=x,y"}), Combine::zip});
   ASSERT_EQ(points.size(), 2u);
   EXPECT_EQ(points[1][0].value + points[1][1].value, "2y");
-  EXPECT_THROW(combine(parse_axes({"gpu.a=1,2", "gpu.b=x"}), Combine::zip), InputError);
+  EXPECT_THROW(PointSettings(parse_axes({"gpu.a=1,2", "gpu.b=x"}), Combine::zip), InputError);
+}
+
+TEST(Axes, NoneSpanOnePointWithoutSettings) {
+  for (const Points& points : {all({std::vector<Axis>{}, Combine::grid}), all({})}) {
+    ASSERT_EQ(points.size(), 1u);
+    EXPECT_TRUE(points[0].empty());
+  }
 }
 
 TEST(Axes, LogarithmicRangesHaveEqualRatios) {
@@ -39,7 +52,7 @@ TEST(LatinHypercube, UsesEachStratumOfEachRangeOnce) {
   constexpr int kPoints = 64;
   const std::vector<Axis> axes = parse_axes({"gpu.a=2..10", "gpu.b=1..1024:2:log"});
   for (const std::uint64_t seed : {1u, 2u, 12345u}) {
-    const Points points = latin_hypercube(axes, kPoints, seed);
+    const Points points = all({axes, kPoints, seed});
     ASSERT_EQ(points.size(), std::size_t{kPoints});
     std::set<int> linear, logarithmic;
     for (const auto& point : points) {
@@ -56,7 +69,7 @@ TEST(LatinHypercube, UsesEachStratumOfEachRangeOnce) {
 }
 
 TEST(LatinHypercube, TakesEachValueOfAListEquallyOften) {
-  const Points points = latin_hypercube(parse_axes({"gpu.a=x,y,z"}), 12, 7);
+  const Points points = all({parse_axes({"gpu.a=x,y,z"}), 12, 7});
   std::map<std::string, int> count;
   for (const auto& point : points) ++count[point[0].value];
   EXPECT_EQ(count, (std::map<std::string, int>{{"x", 4}, {"y", 4}, {"z", 4}}));
@@ -66,7 +79,7 @@ TEST(LatinHypercube, FollowsItsSeed) {
   const std::vector<Axis> axes = parse_axes({"gpu.a=0..1", "gpu.b=0..1"});
   const auto text = [&](std::uint64_t seed) {
     std::string joined;
-    for (const auto& point : latin_hypercube(axes, 8, seed))
+    for (const auto& point : all({axes, 8, seed}))
       for (const Assignment& set : point) joined += set.value + " ";
     return joined;
   };
@@ -75,7 +88,7 @@ TEST(LatinHypercube, FollowsItsSeed) {
 }
 
 TEST(LatinHypercube, ShufflesTheAxesIndependently) {
-  const Points points = latin_hypercube(parse_axes({"gpu.a=0..1", "gpu.b=0..1"}), 32, 1);
+  const Points points = all({parse_axes({"gpu.a=0..1", "gpu.b=0..1"}), 32, 1});
   int same = 0;
   for (const auto& point : points)
     same += static_cast<int>(number(point[0]) * 32) == static_cast<int>(number(point[1]) * 32);

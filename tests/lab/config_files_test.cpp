@@ -25,6 +25,26 @@ TEST(ConfigFiles, GiveWhatLoadingAloneGives) {
   }
 }
 
+// Settings are laid over a GPU that is resolved already; an overlay is resolved with the files.
+TEST(ConfigFiles, SettingsGiveTheNumbersOfAnOverlay) {
+  const fs::path path = fs::path(::testing::TempDir()) / "hwsim_as_settings.toml";
+  std::ofstream(path) << "schema = 1\nkind = \"overlay\"\nl2_size_kib = 1024\ndram_bandwidth_gb_s = \"x2\"\n"
+                         "rop_through_l2 = false\nqueue_packets = \"x2\"\nfeatures.native_msaa_max = 4\n";
+  const std::vector<Assignment> sets = {{"gpu.l2_size_kib", "1024"},
+                                        {"gpu.dram_bandwidth_gb_s", "x2"},
+                                        {"gpu.rop_through_l2", "false"},
+                                        {"gpu.queue_packets", "x2"},
+                                        {"gpu.features.native_msaa_max", "4"}};
+  ConfigFiles files;
+  for (const char* name : {"gtx980", "hd7650m"}) {
+    const GpuConfig plain = files.gpu(name, {}, {}, true), set = files.gpu(name, {}, sets, true);
+    EXPECT_EQ(content_hash(set), content_hash(files.gpu(name, {path.string()}, {}, true)));
+    EXPECT_EQ(set.queue_packets, 2 * plain.queue_packets);
+    EXPECT_EQ(set.origins.at("l2_size_kib").to_string(), "--set");
+    EXPECT_EQ(set.origins.at("core_clock_mhz").to_string(), plain.origins.at("core_clock_mhz").to_string());
+  }
+}
+
 TEST(ConfigFiles, FittedNumbersAreTakenWhereAskedFor) {
   ConfigFiles files;
   ASSERT_NE(files.calibration(), nullptr);

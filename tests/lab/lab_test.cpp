@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "hwsim/config/settings.h"
 #include "lab/workbench.h"
@@ -216,11 +217,10 @@ TEST(Lab, ExplainDividesEachPassAmongUnitsAndTakesThemAway) {
 TEST(Lab, SweepRunsWhatIsPlannedAndNothingTwice) {
   const Workbench bench;
   Lab lab;
-  const std::vector<std::vector<Assignment>> clocks = {{parse_assignment("gpu.core_clock_mhz=800")},
-                                                       {parse_assignment("gpu.core_clock_mhz=1600")}};
-  const std::vector<PlannedPoint> points = lab.plan_sweep(bench.request({"none", "msaa4x"}), clocks);
+  const PointSettings clocks(parse_axes({"gpu.core_clock_mhz=800,1600"}), Combine::grid);
+  const SweepPlan points = lab.plan_sweep(bench.request({"none", "msaa4x"}), clocks);
   ASSERT_EQ(points.size(), 4u);
-  EXPECT_EQ(planned_table(points).rows.size(), 4u);
+  EXPECT_EQ(collected(planned_rows(points)).rows.size(), 4u);
   const std::string database = bench.path("sweep.sqlite");
   const SweepSummary half = lab.sweep(points, {.database = database, .shard = parse_shard("1/2")});
   EXPECT_EQ(half.done, 2u);
@@ -228,16 +228,50 @@ TEST(Lab, SweepRunsWhatIsPlannedAndNothingTwice) {
   const SweepSummary whole = lab.sweep(points, {.database = database, .resume = true});
   EXPECT_EQ(whole.done, 4u);
   EXPECT_EQ(whole.left + whole.failed, 0u);
-  EXPECT_EQ(whole.points.rows.size(), 4u);
+  EXPECT_EQ(collected(whole.points).rows.size(), 4u);
   EXPECT_EQ(mistakes([&] { lab.sweep(points, {.database = database}); }), std::vector<std::string>{"U013"});
   EXPECT_EQ(lab.sweep({}, {.database = database}).done, 4u) << "without points it is only read";
 }
 
 TEST(Lab, SweepReportsTheMistakesOfItsPointsBeforeItRuns) {
   const Workbench bench;
-  const std::vector<std::vector<Assignment>> wrong = {{parse_assignment("gpu.core_clok_mhz=800")},
-                                                      {parse_assignment("gpu.core_clok_mhz=900")}};
-  EXPECT_EQ(mistakes([&] { Lab().plan_sweep(bench.request(), wrong); }).size(), 2u);
+  const auto mistakes_of = [&](const std::vector<std::string>& axes) {
+    return mistakes([&] { Lab().plan_sweep(bench.request(), {parse_axes(axes), Combine::grid}); });
+  };
+  EXPECT_EQ(mistakes_of({"gpu.core_clok_mhz=800,900"}).size(), 2u);
+  const std::string clocks = "gpu.core_clock_mhz=500..1500:1000";
+  EXPECT_EQ(mistakes_of({clocks, "gpu.l2_size_kib=512,-1,many"}), (std::vector<std::string>{"C014", "C013"}))
+      << "not once for each clock";
+}
+
+// Neither value is wrong alone.
+TEST(Lab, SweepNamesThePointOfAProductThatIsWrongAsAWhole) {
+  const Workbench bench;
+  try {
+    Lab().plan_sweep(
+        bench.request(),
+        {parse_axes({"gpu.tex_64bit_ratio=0.25,0.5", "gpu.tex_128bit_ratio=0.2,0.4"}), Combine::grid});
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    ASSERT_EQ(error.diagnostics().size(), 1u);
+    EXPECT_EQ(error.diagnostics().front().code, "C018");
+    EXPECT_EQ(error.diagnostics().front().notes.back(),
+              "point 2: gpu.tex_64bit_ratio=0.25 gpu.tex_128bit_ratio=0.4");
+  }
+}
+
+TEST(Lab, PlannedPointsAreTheSameInWhateverOrderTheyAreAskedFor) {
+  const Workbench bench;
+  Lab lab;
+  const PointSettings settings(parse_axes({"gpu.core_clock_mhz=800,1600", "scene.exposure=1,2"}),
+                               Combine::grid);
+  const SweepPlan plan = lab.plan_sweep(bench.request(), settings);
+  ASSERT_EQ(plan.size(), 4u);
+  const std::vector<std::string> ids = {plan[0].id, plan[1].id, plan[2].id, plan[3].id};
+  EXPECT_EQ(std::set<std::string>(ids.begin(), ids.end()).size(), 4u);
+  for (const std::size_t i : {3u, 0u, 2u, 1u}) EXPECT_EQ(plan.row(i).id, ids[i]);
+  EXPECT_EQ(plan.order(), (std::vector<std::uint32_t>{0, 2, 1, 3}))
+      << "points that share an emulation together";
 }
 
 TEST(Lab, ShardIsAPartOfAWhole) {

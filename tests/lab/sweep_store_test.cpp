@@ -57,14 +57,16 @@ class SweepStoreTest : public ::testing::Test {
     std::vector<SweepPoint> planned;
     for (const auto& [id, time_ns] : points)
       planned.push_back(point(id, static_cast<std::int64_t>(planned.size()) + 1));
-    store.add(planned);
+    store.add(planned.size(), [&](std::size_t i) { return planned[i]; });
+    std::vector<FinishedPoint> finished;
     for (const auto& [id, time_ns] : points)
-      if (time_ns > 0.0) store.finish(id, result(time_ns));
+      if (time_ns > 0.0) finished.push_back({id, result(time_ns)});
+    store.finish(finished);
   }
 
   /// Milliseconds of each point by its id; -1 where it is not done.
   static std::map<std::string, double> times(SweepStore& store) {
-    const Table table = store.points();
+    const Table table = collected(store.points());
     std::map<std::string, double> found;
     for (const auto& row : table.rows) {
       const Real* time = std::get_if<Real>(&row.at(9));
@@ -109,8 +111,8 @@ TEST_F(SweepStoreTest, MergeTakesOverWhatIsDoneThereAndNotHere) {
   EXPECT_EQ(a.merge(path("b.db")), 2u) << "p2 and p4";
   EXPECT_EQ(times(a), (std::map<std::string, double>{{"p1", 1.0}, {"p2", 2.0}, {"p3", -1.0}, {"p4", 4.0}}))
       << "what was done here stays as it was";
-  EXPECT_EQ(a.count("done"), 3u);
-  EXPECT_EQ(a.count("pending"), 1u);
+  EXPECT_EQ(a.states()["done"], 3u);
+  EXPECT_EQ(a.states()["pending"], 1u);
 }
 
 TEST_F(SweepStoreTest, MergingTheSameAgainChangesNothing) {
@@ -119,7 +121,7 @@ TEST_F(SweepStoreTest, MergingTheSameAgainChangesNothing) {
   SweepStore a(path("a.db"), SweepAccess::go_on);
   EXPECT_EQ(a.merge(path("b.db")), 1u);
   EXPECT_EQ(a.merge(path("b.db")), 0u);
-  EXPECT_EQ(a.count("done"), 2u);
+  EXPECT_EQ(a.states()["done"], 2u);
 }
 
 TEST_F(SweepStoreTest, MergedPartsOfASweepEqualTheWhole) {
@@ -128,7 +130,7 @@ TEST_F(SweepStoreTest, MergedPartsOfASweepEqualTheWhole) {
   make("2.db", {{"p1", 0.0}, {"p2", 2e6}, {"p3", 3e6}});
   SweepStore merged(path("1.db"), SweepAccess::go_on), whole(path("whole.db"), SweepAccess::go_on);
   merged.merge(path("2.db"));
-  EXPECT_EQ(to_csv(merged.points()), to_csv(whole.points()));
+  EXPECT_EQ(to_csv(collected(merged.points())), to_csv(collected(whole.points())));
 }
 
 TEST_F(SweepStoreTest, MergeOfAFileThatIsNotThereIsRefused) {
@@ -142,7 +144,7 @@ TEST_F(SweepStoreTest, PointsThatAKilledProcessLeftAreInterrupted) {
   make("a.db", {{"p1", 0.0}});
   SweepStore(path("a.db"), SweepAccess::go_on).start("p1");
   SweepStore a(path("a.db"), SweepAccess::go_on);
-  a.add({point("p1", 1)});
+  a.add(1, [](std::size_t) { return point("p1", 1); });
   EXPECT_EQ(a.state_of("p1"), "interrupted");
 }
 
@@ -169,7 +171,7 @@ TEST_F(SweepStoreTest, LookAndBeingMergedLeaveAnotherSweepAsItWas) {
   const auto before = files();
   {
     SweepStore looked(path("a.db"), SweepAccess::look);
-    EXPECT_EQ(looked.points().rows.size(), 2u);
+    EXPECT_EQ(collected(looked.points()).rows.size(), 2u);
     EXPECT_THROW(looked.start("p2"), InputError) << "it is open for reading only";
   }
   EXPECT_EQ(SweepStore(path("b.db"), SweepAccess::go_on).merge(path("a.db")), 1u);
@@ -187,8 +189,8 @@ TEST_F(SweepStoreTest, ReplacedSweepOfAnyVersionIsEmptyAndOfThisVersion) {
   Database(path("a.db"), Database::Mode::write).execute("PRAGMA user_version=99");
   EXPECT_EQ(code_of([&] { SweepStore(path("a.db"), SweepAccess::look); }), "U021");
   EXPECT_EQ(code_of([&] { SweepStore(path("a.db"), SweepAccess::go_on); }), "U021");
-  EXPECT_EQ(SweepStore(path("a.db"), SweepAccess::replace).count("done"), 0u);
-  EXPECT_TRUE(SweepStore(path("a.db"), SweepAccess::look).points().rows.empty());
+  EXPECT_EQ(SweepStore(path("a.db"), SweepAccess::replace).states()["done"], 0u);
+  EXPECT_TRUE(collected(sweep_rows(path("a.db"))).rows.empty());
 }
 
 TEST_F(SweepStoreTest, PointThatAKilledProcessLeftRunningIsStillToBeDone) {
