@@ -236,11 +236,11 @@ pipeline::FrameGraph build_frame(const TechniqueChoice& choice, const FrameReque
   return graph;
 }
 
-std::vector<Diagnostic> frame_notes(const TechniqueChoice& choice, const WorkTrace& trace) {
+std::vector<Diagnostic> frame_notes(const TechniqueChoice& choice, const DrawnFrame& frame) {
   std::vector<Diagnostic> all;
   for (const TechniquePart& part : choice.parts) {
     if (!part.info->notes) continue;
-    for (Diagnostic note : part.info->notes(part.options, trace)) {
+    for (Diagnostic note : part.info->notes(part.options, frame)) {
       note.message = technique_text(choice) + ": " + note.message;
       all.push_back(std::move(note));
     }

@@ -38,6 +38,6 @@ void require_filters(const TechniqueChoice& choice);
 pipeline::FrameGraph build_frame(const TechniqueChoice& choice, const FrameRequest& request);
 
 /// What its techniques say of a frame that was emulated: each message begins with the text of the choice.
-std::vector<Diagnostic> frame_notes(const TechniqueChoice& choice, const WorkTrace& trace);
+std::vector<Diagnostic> frame_notes(const TechniqueChoice& choice, const DrawnFrame& frame);
 
 }  // namespace hwsim::algos

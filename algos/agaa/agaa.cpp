@@ -8,6 +8,7 @@
 #include "algos/agaa/shaders/programs.h"
 #include "algos/agaa/uniforms.h"
 #include "algos/base/frame_parts.h"
+#include "algos/base/lost_light.h"
 #include "pipeline/shade/mesh_vertex.h"
 
 namespace hwsim::algos {
@@ -308,16 +309,22 @@ int target_samples(const WorkTrace& trace) {
   return 0;
 }
 
-std::vector<Diagnostic> notes(const AgaaOptions& options, const WorkTrace& trace) {
-  const int samples = target_samples(trace);
-  if (samples <= options.aggregates) return {};
+std::vector<Diagnostic> notes(const AgaaOptions& options, const DrawnFrame& frame) {
+  SurfaceRecord record;
+  record.holds_blended = true;
+  std::vector<Diagnostic> all =
+      lost_light(frame.surfaces, record,
+                 "forward techniques, as msaa8x, show it; so does `sbaa_merge` but for occlusion");
+  const int samples = target_samples(frame.trace);
+  if (samples <= options.aggregates) return all;
   Diagnostic note;
   note.severity = Severity::note;
   note.code = kPlaceLeftEmpty.code;
   note.message = "color samples divide raster samples: " + std::to_string(options.aggregates) +
                  " aggregates take the memory of " + std::to_string(samples);
   note.help = "accumulate=atomics stores them without a gap";
-  return {note};
+  all.push_back(std::move(note));
+  return all;
 }
 
 constexpr CounterLaw kLaws[] = {
@@ -331,7 +338,7 @@ constexpr CounterLaw kLaws[] = {
 }  // namespace
 
 Room agaa_room() {
-  static constexpr MessageCode kCodes[] = {kPlaceLeftEmpty};
+  static constexpr MessageCode kCodes[] = {kPlaceLeftEmpty, kUnlitIsEmission};
   const TechniqueInfo agaa = base_technique(
       "agaa",
       "aggregate G-buffer: dense visibility, up to four pre-filtered surfaces a pixel (Crassin et al. 2016)",

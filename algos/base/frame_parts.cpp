@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "pipeline/emulate/material_views.h"
+#include "pipeline/scene/shadow_view.h"
 #include "pipeline/shade/mesh_vertex.h"
 
 namespace hwsim::algos {
@@ -99,26 +100,6 @@ void keep_lights(int count, LightingUniforms& lighting) {
   lighting.points.resize(static_cast<std::size_t>(std::max(1, lighting.point_count)));
 }
 
-/// An orthographic view along the light that holds the whole scene.
-glm::mat4 shadow_clip_from_world(const Scene& scene, const glm::vec3& to_light) {
-  const SceneStats s = stats(scene);
-  const glm::vec3 up = std::fabs(to_light.y) > 0.99f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
-  const glm::mat4 view = glm::lookAt(to_light, glm::vec3(0.0f), up);
-  glm::vec3 low(1e30f), high(-1e30f);
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 p((corner & 1) != 0 ? s.bounds_max.x : s.bounds_min.x,
-                      (corner & 2) != 0 ? s.bounds_max.y : s.bounds_min.y,
-                      (corner & 4) != 0 ? s.bounds_max.z : s.bounds_min.z);
-    const glm::vec3 v(view * glm::vec4(p, 1.0f));
-    low = glm::min(low, v);
-    high = glm::max(high, v);
-  }
-  const glm::vec3 margin = 0.01f * (high - low) + glm::vec3(1e-3f);
-  low -= margin;
-  high += margin;
-  return glm::ortho(low.x, high.x, low.y, high.y, -high.z, -low.z) * view;
-}
-
 DrawBatch depth_batch(const glm::mat4& clip_from_world, const std::vector<DrawCall>& draws, bool alpha_test) {
   DrawBatch batch;
   batch.state.depth = {true, true, Compare::less};
@@ -155,10 +136,8 @@ void add_shadow_map(FrameGraph& graph, FrameParts& parts) {
                            glm::scale(glm::mat4(1.0f), glm::vec3(half, -half, 1.0f));
   lighting.shadow_from_world = texels * clip;
   lighting.shadow_slot = 0;
-  // A texel's footprint in meters: moving the receiver by 1.5 of them keeps a slope of 45 degrees from
-  // shadowing itself.
-  const glm::vec3 row(clip[0][0], clip[1][0], clip[2][0]);
-  lighting.shadow_offset_m = 1.5f / (glm::length(row) * half);
+  // Moving the receiver by 1.5 texels keeps a slope of 45 degrees from shadowing itself.
+  lighting.shadow_offset_m = 1.5f / shadow_texels_per_m(clip, size).x;
   lighting.shadow_bias = 1e-4f;
 }
 

@@ -16,6 +16,7 @@
 #include "hwsim/gpu/gpu_features.h"
 #include "hwsim/trace/work_trace.h"
 #include "pipeline/graph/frame_graph.h"
+#include "pipeline/scene/special_surfaces.h"
 
 namespace hwsim::algos {
 
@@ -44,6 +45,12 @@ struct FrameRequest {
   FunctionalConfig functional;
 };
 
+/// A frame that was emulated, as notes look at it: its work, and what its scene has of special surfaces.
+struct DrawnFrame {
+  const WorkTrace& trace;
+  const std::vector<pipeline::SpecialSurface>& surfaces;
+};
+
 enum class TechniqueKind { base, modifier, filter };
 
 /// One entry of the registry. Which function it has makes its kind: a base builds the frame, a modifier
@@ -64,7 +71,7 @@ struct TechniqueInfo {
   std::string_view (*refuses)(const TechniqueInfo& other) = nullptr;
   /// What a user should know of a frame that it made: notes and warnings with a code and a message, without
   /// the technique's name. None: nothing ever.
-  std::function<std::vector<Diagnostic>(const Options& options, const WorkTrace& trace)> notes = nullptr;
+  std::function<std::vector<Diagnostic>(const Options& options, const DrawnFrame& frame)> notes = nullptr;
 
   bool has_option(std::string_view name) const {
     return std::ranges::any_of(options, [&](const OptionInfo& option) { return option.name == name; });
@@ -112,9 +119,9 @@ TechniqueInfo filter_technique(std::string_view id, std::string_view description
 /// The entry, with notes.
 template <class Struct>
 TechniqueInfo with_notes(TechniqueInfo info,
-                         std::vector<Diagnostic> (*notes)(const Struct&, const WorkTrace&)) {
-  info.notes = [notes](const Options& options, const WorkTrace& trace) {
-    return notes(options.as<Struct>(), trace);
+                         std::vector<Diagnostic> (*notes)(const Struct&, const DrawnFrame&)) {
+  info.notes = [notes](const Options& options, const DrawnFrame& frame) {
+    return notes(options.as<Struct>(), frame);
   };
   return info;
 }

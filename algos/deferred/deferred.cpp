@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "algos/base/frame_parts.h"
+#include "algos/base/lost_light.h"
 #include "algos/base/shaders/post.h"
 #include "algos/deferred/options.h"
 #include "algos/deferred/shaders/programs.h"
@@ -230,12 +231,33 @@ void describe(OptionList& list, SimpleComplexOptions& o) {
               "alpha is coverage, not a test; with layout=gb_agaa16");
 }
 
+namespace {
+
+std::vector<Diagnostic> notes(const DeferredOptions& options, const DrawnFrame& frame) {
+  SurfaceRecord record;
+  record.unlit_mark = true;
+  const GBufferLayout& layout = gbuffer_layouts()[static_cast<std::size_t>(options.layout)];
+  if (layout.encoding == GBufferEncoding::record) record.emission = StoredEmission::color;
+  return lost_light(frame.surfaces, record,
+                    record.emission == StoredEmission::color
+                        ? "forward techniques keep it off"
+                        : "layout=gb_sbaa40 keeps the color of emission, forward techniques all of it");
+}
+std::vector<Diagnostic> simple_complex_notes(const SimpleComplexOptions& options, const DrawnFrame& frame) {
+  return notes(options.gbuffer, frame);
+}
+
+}  // namespace
+
 Room deferred_room() {
-  return {.techniques = {
-              base_technique("deferred", "multisampled G-buffer, every sample lit", build_deferred),
-              base_technique("deferred_simple_complex",
-                             "multisampled G-buffer, samples lit only where they differ (Lauritzen 2010)",
-                             build_simple_complex)}};
+  static constexpr MessageCode kCodes[] = {kEmissionIsGray, kOcclusionIsLost};
+  const TechniqueInfo all =
+      base_technique("deferred", "multisampled G-buffer, every sample lit", build_deferred);
+  const TechniqueInfo simple_complex = base_technique(
+      "deferred_simple_complex", "multisampled G-buffer, samples lit only where they differ (Lauritzen 2010)",
+      build_simple_complex);
+  return {.techniques = {with_notes(all, notes), with_notes(simple_complex, simple_complex_notes)},
+          .codes = kCodes};
 }
 
 }  // namespace hwsim::algos

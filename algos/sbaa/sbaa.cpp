@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "algos/base/frame_parts.h"
+#include "algos/base/lost_light.h"
 #include "algos/sbaa/options.h"
 #include "algos/sbaa/shaders/programs.h"
 #include "pipeline/shade/mesh_vertex.h"
@@ -226,6 +227,20 @@ constexpr CounterLaw kLaws[] = {
                       c.technique[C::merge_fallbacks_surfaces], c.technique[C::slots_emitted_surfaces]),
 };
 
+std::vector<Diagnostic> notes(const SbaaOptions& options, const DrawnFrame& frame) {
+  SurfaceRecord record;
+  record.unlit_mark = true;
+  const int words = (options.record_bytes + 3) / 4;
+  record.emission = words < 4 ? StoredEmission::none : StoredEmission::color;
+  return lost_light(frame.surfaces, record,
+                    record.emission == StoredEmission::none
+                        ? "record_bytes=16 holds emission, forward techniques show all of it"
+                        : "forward techniques keep it off");
+}
+std::vector<Diagnostic> merge_notes(const SbaaMergeOptions& options, const DrawnFrame& frame) {
+  return notes(options.sbaa, frame);
+}
+
 }  // namespace
 
 void describe(OptionList& list, SbaaOptions& o) {
@@ -250,14 +265,15 @@ void describe(OptionList& list, SbaaMergeOptions& o) {
 }
 
 Room sbaa_room() {
-  return {
-      .techniques = {base_technique("sbaa_top",
-                                    "deferred, the n primitives with the most samples of a pixel lit (SBAA)",
-                                    build_sbaa_top),
-                     base_technique("sbaa_merge", "the same, primitives that form one surface merged (SBAA)",
-                                    build_sbaa_merge)},
-      .counters = C::kDeclared,
-      .laws = kLaws};
+  static constexpr MessageCode kCodes[] = {kEmissionIsLost};
+  const TechniqueInfo top = base_technique(
+      "sbaa_top", "deferred, the n primitives with the most samples of a pixel lit (SBAA)", build_sbaa_top);
+  const TechniqueInfo merge = base_technique(
+      "sbaa_merge", "the same, primitives that form one surface merged (SBAA)", build_sbaa_merge);
+  return {.techniques = {with_notes(top, notes), with_notes(merge, merge_notes)},
+          .counters = C::kDeclared,
+          .laws = kLaws,
+          .codes = kCodes};
 }
 
 }  // namespace hwsim::algos

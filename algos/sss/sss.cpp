@@ -157,8 +157,8 @@ Diagnostic overflow_warning(std::string message, std::string help) {
   return warning;
 }
 
-std::vector<Diagnostic> list_notes(const SssListOptions&, const WorkTrace& trace) {
-  const TechniqueCounters n = total(trace).technique;
+std::vector<Diagnostic> list_notes(const SssListOptions&, const DrawnFrame& frame) {
+  const TechniqueCounters n = total(frame.trace).technique;
   const std::uint64_t dropped = n[C::sss_dropped_fragments], truncated = n[C::sss_truncated_pixels];
   const std::string all = std::to_string(dropped + n[C::sss_stored_fragments]);
   std::vector<Diagnostic> notes;

@@ -124,7 +124,8 @@ constexpr ErrorCode kCodes[] = {
     {"S110", "motion ignored", "Animations, skins and morph targets: the scene is drawn as modeled."},
     {"S111", "factors clamped", "Material factors outside 0 to 1 were clamped."},
     {"S112", "texture left out", "It uses an extension or a coordinate set that is not supported."},
-    {"S113", "light left out or turned", "Its type is unknown, or its direction cannot be told."},
+    {"S113", "light left out or changed",
+     "Its type is unknown, its direction cannot be told, or a value is out of range."},
     {"S114", "first scene taken", "The file has several scenes and names none as the default."},
     {"S115", "camera left out",
      "Its values are none that glTF 2.0 allows, or its node has a scale of zero. The other cameras are "
@@ -156,6 +157,10 @@ constexpr ErrorCode kCodes[] = {
     {"S206", "cache folder cannot be created",
      "Generated scenes are kept below $HWSIM_CACHE, else $XDG_CACHE_HOME/hwsim, else ~/.cache/hwsim."},
     {"S300", "contents of a scene", "What the file holds, as `hwsim scene check` counts it."},
+    {"S301", "shadow map is coarse",
+     "A texel of the shadow map covers more than 10 pixels: shadows have steps of that size, and stop that "
+     "far "
+     "from what casts them. The map holds the whole scene, however little of it is seen."},
 
     {"M001", "mapping of the published tables",
      "A line of configs/published/mapping/*.csv matches no row, or names something that does not exist."},

@@ -4,9 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "algos/base/technique.h"
 #include "hwsim/base/file_name.h"
 #include "pipeline/open/scene_check.h"
 #include "pipeline/open/scene_source.h"
+#include "pipeline/reference/shadow_detail.h"
 
 namespace hwsim::lab {
 namespace {
@@ -51,9 +53,34 @@ std::vector<Column> scene_columns() {
 
 bool is_file(const std::string& name) { return has_extension(name, ".gltf") || has_extension(name, ".glb"); }
 
+/// Cameras from which shadows have steps of many pixels, in a frame as it is drawn by default.
+void add_coarse_shadows(const std::string& name, const pipeline::Scene& scene, std::vector<Diagnostic>& all) {
+  constexpr std::size_t kLookedThrough = 8;  // a file may have thousands
+  const algos::FrameRequest frame;
+  const auto details =
+      pipeline::shadow_details(scene, kLookedThrough, frame.width_px, frame.height_px, frame.shadow_map_px);
+  for (std::size_t i = 0; i < details.size(); ++i) {
+    if (details[i].coarse_share < 0.01) continue;
+    Diagnostic coarse;
+    coarse.severity = Severity::warning;
+    coarse.code = "S301";
+    coarse.place.file = name;
+    coarse.message = fmt::format(
+        "a texel of the shadow map covers more than {:.0f} pixels in {:.0f} % of what camera `{}` sees at "
+        "{} x {} (the median is {:.3g} pixels): shadows have steps of that size",
+        pipeline::kCoarseTexelPx, 100.0 * details[i].coarse_share, scene.cameras[i].name, frame.width_px,
+        frame.height_px, details[i].median_px);
+    coarse.help = fmt::format("a larger map than {0} x {0}: --set scene.shadow_map_px=8192; or --no-shadows",
+                              frame.shadow_map_px);
+    all.push_back(std::move(coarse));
+  }
+}
+
 /// What there is to say about a scene that loads; of a file, what it uses too.
 std::vector<Diagnostic> findings(const std::string& name, const pipeline::Scene& scene) {
-  return is_file(name) ? pipeline::check_gltf(name) : scene.notes;
+  std::vector<Diagnostic> all = is_file(name) ? pipeline::check_gltf(name) : scene.notes;
+  add_coarse_shadows(name, scene, all);
+  return all;
 }
 
 }  // namespace

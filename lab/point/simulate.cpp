@@ -39,6 +39,7 @@ PointResult Simulator::run(const algos::TechniqueChoice& technique, const GpuCon
   PointResult point;
   point.technique = &technique;
   point.gpu = &gpu;
+  point.surfaces = scene_.summary().surfaces;
   const EmulatedFrame frame =
       store_.frame(scene_, technique, gpu, {plan_.skip, plan_.images || reference_ != nullptr}, progress);
   point.emulation = frame.emulation;

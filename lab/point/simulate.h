@@ -23,6 +23,7 @@ class InternalError : public std::runtime_error {
 struct PointResult {
   const algos::TechniqueChoice* technique = nullptr;
   const GpuConfig* gpu = nullptr;
+  std::vector<pipeline::SpecialSurface> surfaces{};  ///< special ones of the scene
   std::shared_ptr<const pipeline::Emulation> emulation;
   bool from_cache = false;  ///< an earlier point, or an earlier run, emulated the same work
   FrameTiming timing;

@@ -57,7 +57,8 @@ const PassTiming& slowest_pass(const FrameTiming& timing) {
 }
 
 std::vector<Diagnostic> result_warnings(const PointResult& point) {
-  std::vector<Diagnostic> warnings = algos::frame_notes(*point.technique, point.emulation->trace);
+  std::vector<Diagnostic> warnings =
+      algos::frame_notes(*point.technique, {point.emulation->trace, point.surfaces});
   if (!draws_a_scene(point.emulation->trace)) return warnings;
   const auto look = pipeline::check_frame(point.emulation->color, pipeline::Scene{}.background);
   warnings.insert(warnings.end(), look.begin(), look.end());

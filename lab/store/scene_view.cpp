@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kKind = "scene";
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 constexpr std::int64_t kNsPerS = 1'000'000'000;
 constexpr std::int64_t kSettledNs = kNsPerS / 10;  // far more than the tick of any file system's clock
 
@@ -89,6 +89,13 @@ std::vector<std::uint8_t> encode(const SceneSummary& summary, const std::vector<
   for (const std::string& camera : summary.cameras) out.text(camera);
   out.count(summary.notes.size());
   for (const Diagnostic& note : summary.notes) write_note(out, note);
+  out.count(summary.surfaces.size());
+  for (const pipeline::SpecialSurface& surface : summary.surfaces) {
+    out.text(surface.material);
+    for (const bool trait :
+         {surface.blended, surface.emissive, surface.colored_emission, surface.unlit, surface.occluded})
+      out.count(trait ? 1 : 0);
+  }
   return seal(kKind, kVersion, out.take());
 }
 
@@ -108,6 +115,13 @@ std::optional<SceneSummary> decode(std::span<const std::uint8_t> bytes) {
   for (std::string& camera : summary.cameras) camera = in.text();
   summary.notes.resize(in.elements());
   for (Diagnostic& note : summary.notes) note = read_note(in);
+  summary.surfaces.resize(in.elements());
+  for (pipeline::SpecialSurface& surface : summary.surfaces) {
+    surface.material = in.text();
+    for (bool* trait :
+         {&surface.blended, &surface.emissive, &surface.colored_emission, &surface.unlit, &surface.occluded})
+      *trait = in.count() != 0;
+  }
   in.expect_end();
   return summary;
 }
@@ -182,7 +196,7 @@ SceneView::SceneView(View plan, const Cache& cache, Observer& observer)
 void SceneView::load() {
   auto scene = std::make_shared<const pipeline::Scene>(
       pipeline::open_scene(plan_.scene, cache_.directory(CacheFolder::scenes), load_options(plan_)));
-  summary_ = {scene->name, scene->content_hash, {}, scene->notes};
+  summary_ = {scene->name, scene->content_hash, {}, scene->notes, pipeline::special_surfaces(*scene)};
   for (const pipeline::Camera& camera : scene->cameras) summary_.cameras.push_back(camera.name);
   scene_ = std::move(scene);
 }
@@ -192,7 +206,7 @@ void SceneView::load_image() {
   auto scene = std::make_shared<pipeline::Scene>();
   scene->name = fs::path(plan_.scene).stem().string();
   scene->content_hash = input.content_hash;
-  summary_ = {scene->name, scene->content_hash, {}, {}};
+  summary_ = {scene->name, scene->content_hash, {}, {}, {}};
   image_ = input.texels;
   plan_.resolution = {image_->width, image_->height};
   scene_ = std::move(scene);

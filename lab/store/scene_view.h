@@ -19,6 +19,7 @@ struct SceneSummary {
   std::string content_hash;
   std::vector<std::string> cameras;
   std::vector<Diagnostic> notes;
+  std::vector<pipeline::SpecialSurface> surfaces;
 };
 
 class SceneView {

@@ -135,9 +135,13 @@ void place_everything(Scene& scene, Report& report, const gltf::Placement& place
                       const std::vector<DrawnMesh>& drawn, std::vector<PlacedNode>& nodes) {
   const bool as_is = placement.is_identity();
   const glm::dmat4 scene_from_file = placement.matrix();
-  for (const DrawnMesh& d : drawn)
-    scene.instances.push_back(
-        {d.mesh, glm::mat4(as_is ? d.file_from_mesh : scene_from_file * d.file_from_mesh), d.name});
+  for (const DrawnMesh& d : drawn) {
+    const glm::dmat4 matrix = as_is ? d.file_from_mesh : scene_from_file * d.file_from_mesh;
+    // Squares stay inside a float's range. A mesh's own size was taken out: what is left is stretched.
+    if (!(largest_scale(matrix) <= 1e18))
+      report.fail("S010", d.name + " is stretched by more than 1e18", "scale the node down");
+    scene.instances.push_back({d.mesh, glm::mat4(matrix), d.name});
+  }
   if (as_is) return;
   for (PlacedNode& placed : nodes) placed.world_from_local = scene_from_file * placed.world_from_local;
   scene.origin_m = placement.origin;

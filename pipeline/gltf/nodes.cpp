@@ -46,13 +46,13 @@ glm::dmat4 local_matrix(const Report& report, const tinygltf::Node& node, int in
 }
 
 void check_matrix(const Report& report, const glm::dmat4& m, int node) {
-  constexpr double kMax = 1e18;  // squares stay inside float's range
+  constexpr double kMax = 1e100;  // a product of three stays finite; what is drawn is looked at later
   for (int c = 0; c < 4; ++c)
     for (int r = 0; r < 4; ++r)
       if (!(std::abs(m[c][r]) <= kMax))
         report.fail("S010",
                     element("nodes", static_cast<std::size_t>(node)) +
-                        "'s transformation is not finite or above 1e18",
+                        "'s transformation is not finite or above 1e100",
                     "scale the scene down, or repair the node");
 }
 
@@ -90,6 +90,20 @@ glm::mat4 view_of(const Frame& f) {
   return glm::mat4(view);
 }
 
+/// Values that no light has are brought into range, and said.
+void note_odd_values(Report& report, const tinygltf::Light& light, const std::string& where) {
+  const bool below_zero = light.intensity < 0.0 || std::any_of(light.color.begin(), light.color.end(),
+                                                               [](double channel) { return channel < 0.0; });
+  if (below_zero) report.warn("S113", "lights of less than nothing give none", where);
+  if (light.range < 0.0) report.warn("S113", "lights whose range is below zero reach everywhere", where);
+  const tinygltf::SpotLight& cone = light.spot;
+  const bool in_order = cone.innerConeAngle >= 0.0 && cone.innerConeAngle < cone.outerConeAngle &&
+                        cone.outerConeAngle <= std::numbers::pi / 2 + 1e-6;
+  if (light.type == "spot" && !in_order)
+    report.warn("S113", "spot lights get an outer angle of at most a quarter turn, and an inner one below it",
+                where);
+}
+
 std::optional<Light> light_of(Report& report, const tinygltf::Light& source, const Frame& frame,
                               const std::string& where, double units_per_m) {
   Light light;
@@ -103,6 +117,7 @@ std::optional<Light> light_of(Report& report, const tinygltf::Light& source, con
     report.warn("S113", "lights of an unknown type are left out", where);
     return std::nullopt;
   }
+  note_odd_values(report, source, where);
   // What arrives falls with the square of the distance, which grows with the units.
   const double unit = light.kind == LightKind::directional ? 1.0 : units_per_m * units_per_m;
   for (std::size_t i = 0; i < 3; ++i)

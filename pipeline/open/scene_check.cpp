@@ -110,6 +110,11 @@ std::string lights_line(const Scene& scene, const std::vector<std::string>& name
                               kKinds[static_cast<std::size_t>(light.kind)] + ", " + number(strength) +
                               (light.casts_shadow ? ", casts shadows)" : ")");
                      });
+  const auto unshadowed = std::count_if(scene.lights.begin(), scene.lights.end(),
+                                        [](const Light& light) { return !light.casts_shadow; });
+  if (unshadowed > 0)
+    line += "; " + std::to_string(unshadowed) + (unshadowed == 1 ? " casts no shadow" : " cast no shadow") +
+            " (one directional light does)";
   if (scene.exposure != 1.0) line += "; exposed by " + number(scene.exposure);
   return line;
 }

@@ -77,7 +77,7 @@ void ConformanceScene::add(const std::string& name, const glm::vec3& color, json
   glb_.root["nodes"].push_back(drawn);
   glb_.root["nodes"].push_back({{"translation", {cell % kColumns + 0.5, cell / kColumns + 0.5, 0}},
                                 {"children", {glb_.root["nodes"].size() - 1}}});
-  patches_.push_back({name, glm::min(color, glm::vec3(1.0f))});
+  patches_.push_back({kind_, name, glm::min(color, glm::vec3(1.0f))});
 }
 
 json ConformanceScene::square(int material, bool with_normals) {
@@ -95,11 +95,13 @@ json ConformanceScene::textured_square(int material, const std::vector<float>& u
 }
 
 void ConformanceScene::add_transforms() {
+  kind_ = "negative scales";
   const glm::vec3 red(0.6f, 0.1f, 0.1f);
   const int material = add_material(plain_material(red));
   add("as it is", lit(red), square(material));
   add("mirrored in x", lit(red), square(material), {{"scale", {-1, 1, 1}}});
   add("mirrored in x, y and z, seen from behind", kBackground, square(material), {{"scale", {-1, -1, -1}}});
+  kind_ = "non-uniform scales";
   add("flattened in z", lit(red), square(material), {{"scale", {1, 1, 0}}});
   add("turned by a matrix that ends in 0.9999999", lit(red), square(material),
       {{"matrix", {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0.9999999}}});
@@ -120,6 +122,7 @@ void ConformanceScene::add_transforms() {
 }
 
 void ConformanceScene::add_vertex_colors() {
+  kind_ = "vertex colors";
   const int white = add_material(plain_material(glm::vec3(1.0f)));
   const glm::vec3 color(0.2f, 0.4f, 0.6f);
   const auto colored = [&](int accessor, bool normalized) {
@@ -150,6 +153,7 @@ void ConformanceScene::add_vertex_colors() {
 }
 
 void ConformanceScene::add_modes() {
+  kind_ = "primitive modes";
   const glm::vec3 green(0.1f, 0.5f, 0.2f);
   const int material = add_material(plain_material(green));
   const auto mode = [&](int number, const std::vector<std::uint16_t>& indices) {
@@ -172,6 +176,7 @@ void ConformanceScene::add_modes() {
 }
 
 void ConformanceScene::add_alpha() {
+  kind_ = "alpha modes";
   const glm::vec3 blue(0.1f, 0.2f, 0.7f);
   const auto with_alpha = [&](double alpha, const char* mode, double cutoff = 0.5) {
     json material = plain_material(blue);
@@ -184,6 +189,7 @@ void ConformanceScene::add_alpha() {
   add("masked out", kBackground, with_alpha(0.3, "MASK"));
   add("masked in by its own cutoff", lit(blue), with_alpha(0.3, "MASK", 0.2));
   add("blended", lit(blue) * 0.25f + kBackground * 0.75f, with_alpha(0.25, "BLEND"));
+  kind_ = "double-sided";
   json two_sides = plain_material(blue);
   two_sides["doubleSided"] = true;
   const json turned = {{"rotation", {0, 1, 0, 0}}};
@@ -192,6 +198,7 @@ void ConformanceScene::add_alpha() {
 }
 
 void ConformanceScene::add_textures() {
+  kind_ = "texture transforms";
   // Left half red, right half green, lower half twice as dark: which texel a corner shows tells the
   // coordinates.
   const int texture =
@@ -213,13 +220,14 @@ void ConformanceScene::add_textures() {
   // A quarter turn: (u, v) becomes (v, -u), moved back inside by one.
   add("turned by a texture transform", lit(glm::vec3(linear(120), 0, 0)),
       textured_square(moved({{"rotation", 1.5707963267948966}, {"offset", {0, 1}}}), upper_left));
+  kind_ = "multiple coordinates";
   json second = textured_square(textured({{"index", texture}, {"texCoord", 1}}), upper_left);
   second["attributes"]["TEXCOORD_1"] =
       glb_.add_accessor<float>({0.8f, 0.2f, 0.9f, 0.2f, 0.8f, 0.1f, 0.9f, 0.1f}, kFloat, "VEC2", 2);
   add("the second set of coordinates", lit(right), second);
   second["material"] = moved({{"texCoord", 1}, {"offset", {-0.5, 0}}});
   add("the second set by a texture transform", lit(left), second);
-  // Occlusion keeps off ambient light, not the sun's.
+  kind_ = "occlusion";  // keeps off ambient light, not the sun's
   json occluded = plain_material(glm::vec3(0.5f));
   occluded["occlusionTexture"] = {{"index", add_texture({{0, 255, 255, 255}}, 1)}, {"strength", 0.5}};
   add("occlusion by half", lit(glm::vec3(0.5f), 1.0f, 0.5f),
@@ -239,7 +247,9 @@ void ConformanceScene::add_normal_maps() {
   json with_tangents = textured_square(leaning, kWholeUv);
   with_tangents["attributes"]["TANGENT"] =
       glb_.add_accessor<float>({1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, kFloat, "VEC4", 4);
+  kind_ = "normal maps with tangents";
   add("a normal map with tangents", lit(base, cosine), with_tangents);
+  kind_ = "normal maps without tangents";
   add("a normal map without tangents", lit(base, cosine), textured_square(leaning, kWholeUv));
   material["normalTexture"]["scale"] = 0.5;
   add("a normal map at half its scale", lit(base, x / std::sqrt(x * x * 1.25f + y * y / 4)),
@@ -264,7 +274,9 @@ void ConformanceScene::add_accessors() {
                                       {"type", "VEC3"}});
     interleaved["attributes"][name] = glb_.root["accessors"].size() - 1;
   }
+  kind_ = "interleaved accessors";
   add("interleaved attributes", lit(base), interleaved);
+  kind_ = "sparse accessors";
   json sparse = square(material);
   glb_.root["accessors"].push_back(
       {{"componentType", kFloat},
@@ -277,6 +289,7 @@ void ConformanceScene::add_accessors() {
          {"values", {{"bufferView", glb_.add_view(kCorners)}}}}}});
   sparse["attributes"]["POSITION"] = glb_.root["accessors"].size() - 1;
   add("sparse positions without a base", lit(base), sparse);
+  kind_ = "quantized meshes";
   json quantized = square(material);
   quantized["attributes"]["POSITION"] = glb_.add_accessor<std::int16_t>(
       {-400, -400, 0, 0, 400, -400, 0, 0, -400, 400, 0, 0, 400, 400, 0, 0}, kShort, "VEC3", 4, 8);
@@ -285,16 +298,19 @@ void ConformanceScene::add_accessors() {
   glb_.root["accessors"][static_cast<std::size_t>(normals)]["normalized"] = true;
   quantized["attributes"]["NORMAL"] = normals;
   add("a quantized mesh", lit(base), quantized, {{"scale", {0.001, 0.001, 0.001}}});
+  kind_ = "generated normals";
   add("no normals", lit(base), square(material, false));
 }
 
 void ConformanceScene::add_materials() {
+  kind_ = "emissive strength";
   const glm::vec3 base(0.2f, 0.5f, 0.8f), shine(0.1f, 0.3f, 0.2f);
   json emissive = plain_material(glm::vec3(0.0f));
   emissive["emissiveFactor"] = {shine.x, shine.y, shine.z};
   add("emission", lit(glm::vec3(0.0f)) + shine, square(add_material(emissive)));
   emissive["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 2.5;
   add("emission with a strength", lit(glm::vec3(0.0f)) + 2.5f * shine, square(add_material(emissive)));
+  kind_ = "unlit";
   json unlit = plain_material(base);
   unlit["extensions"]["KHR_materials_unlit"] = json::object();
   add("unlit", base, square(add_material(unlit)));

@@ -13,6 +13,7 @@
 namespace hwsim::test {
 
 struct Patch {
+  std::string kind;  ///< what of glTF it is about
   std::string name;
   glm::vec3 color{0.0f};  ///< linear, as the closed form gives it
 };
@@ -56,6 +57,7 @@ class ConformanceScene {
   void add_camera_and_light();
 
   pipeline::test::GlbBuilder glb_;
+  std::string kind_;  ///< the kind of the patches that are added
   std::vector<Patch> patches_;
 };
 

@@ -102,13 +102,14 @@ TEST(Rooms, CodesOfNotesAreExplainedOnce) {
     EXPECT_TRUE(codes.insert(code.code).second) << code.code;
     EXPECT_FALSE(code.title.empty() || code.explanation.empty()) << code.code;
   }
-  EXPECT_EQ(codes, (std::set<std::string_view>{"T101", "T102"}));
+  EXPECT_EQ(codes, (std::set<std::string_view>{"T101", "T102", "T103", "T104", "T105", "T106"}));
 }
 
 /// "severity code: message; help" of each note.
-std::vector<std::string> told(const std::string& technique, const WorkTrace& trace) {
+std::vector<std::string> told(const std::string& technique, const WorkTrace& trace,
+                              const std::vector<pipeline::SpecialSurface>& surfaces = {}) {
   std::vector<std::string> texts;
-  for (const Diagnostic& d : frame_notes(parse_technique(technique), trace))
+  for (const Diagnostic& d : frame_notes(parse_technique(technique), {trace, surfaces}))
     texts.push_back((d.severity == Severity::warning ? "warning " : "note ") + d.code + ": " + d.message +
                     "; " + d.help);
   return texts;
@@ -144,6 +145,40 @@ TEST(Notes, ListsThatLostFragmentsAreTold) {
             std::vector<std::string>{"warning T101: sss_ppll:m=8: the lists of 3 pixels are longer than the "
                                      "resolve reads; list_cap reads up to 64"});
   EXPECT_TRUE(told("sss_cs", trace).empty());
+}
+
+TEST(Notes, WhatALayoutHasNoRoomForIsTold) {
+  const std::vector<pipeline::SpecialSurface> surfaces = {
+      {.material = "white lamp", .emissive = true},
+      {.material = "sign", .emissive = true, .colored_emission = true},
+      {.material = "glow", .blended = true, .emissive = true, .colored_emission = true},
+      {.material = "sky", .unlit = true},
+      {.material = "wall", .occluded = true}};
+  const auto codes = [&](const std::string& technique) {
+    std::string all;
+    for (const Diagnostic& d : frame_notes(parse_technique(technique), {WorkTrace{}, surfaces}))
+      all += (all.empty() ? "" : " ") + d.code;
+    return all;
+  };
+  EXPECT_EQ(codes("none"), "");
+  EXPECT_EQ(codes("msaa4x+fxaa"), "");
+  EXPECT_EQ(codes("sss_cs"), "");
+  EXPECT_EQ(codes("deferred"), "T103 T105");
+  EXPECT_EQ(codes("deferred:layout=gb_sbaa40"), "T105");
+  EXPECT_EQ(codes("deferred_simple_complex:layout=gb_agaa16"), "T103 T105");
+  EXPECT_EQ(codes("sbaa_top"), "T105");
+  EXPECT_EQ(codes("sbaa_merge:record_bytes=16"), "T105");
+  EXPECT_EQ(codes("sbaa_merge:record_bytes=12"), "T106 T105");
+  EXPECT_EQ(codes("agaa"), "T103 T104 T105");
+  EXPECT_EQ(told("deferred:layout=gb_20", {}, surfaces)[0],
+            "note T103: deferred:layout=gb_20: material `sign`: colored emission is shown in gray, for its "
+            "luminance alone is stored; layout=gb_sbaa40 keeps the color of emission, forward techniques all "
+            "of it")
+      << "what is blended is drawn forward";
+  EXPECT_EQ(
+      told("agaa", {}, surfaces)[0],
+      "note T103: agaa: material `sign` and 1 more: colored emission is shown in gray, for its luminance "
+      "alone is stored; forward techniques, as msaa8x, show it; so does `sbaa_merge` but for occlusion");
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ std::uint64_t mixed_pixels(const pipeline::Emulation& e) {
 }
 
 std::vector<Diagnostic> notes_of(const pipeline::Emulation& e) {
-  return skeleton_room().techniques.front().notes(Options(SkeletonOptions{}), e.trace);
+  return skeleton_room().techniques.front().notes(Options(SkeletonOptions{}), {e.trace, {}});
 }
 
 // A mean of equal colors is the color: resolving only where colors differ changes nothing but rounding.

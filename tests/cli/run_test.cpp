@@ -176,6 +176,29 @@ TEST_F(RunTest, SaysThatThreeAggregatesTakeTheMemoryOfFour) {
     EXPECT_EQ(quiet.err.find("T102"), std::string::npos) << quiet.err;
 }
 
+TEST_F(RunTest, SaysWhatAGBufferHasNoRoomFor) {
+  std::string gltf = kTriangleGltf;
+  const std::string mesh = R"("attributes": {"POSITION": 0})";
+  gltf.replace(gltf.find(mesh), mesh.size(), mesh + R"(, "material": 0)");
+  gltf.replace(gltf.find("\"meshes\""), 0,
+               R"("materials": [{"name": "lamp", "emissiveFactor": [0, 1, 0]}], )");
+  place.write("lamp.gltf", gltf);
+  const auto told = [&](const std::string& technique) {
+    return place.hwsim("run lamp.gltf --resolution 64x48 --no-image --force --json --out lamp -t " +
+                       technique);
+  };
+  // The second answer comes from the cache, without the scene.
+  for (int time = 0; time < 2; ++time) {
+    const Outcome gray = told("deferred");
+    EXPECT_EQ(gray.status, 0) << gray.err;
+    EXPECT_NE(gray.err.find("note[T103]: deferred: material `lamp`: colored emission is shown in gray"),
+              std::string::npos)
+        << gray.err;
+    EXPECT_NE(json::parse(gray.out)["warnings"].dump().find("colored emission"), std::string::npos);
+  }
+  EXPECT_EQ(told("deferred:layout=gb_sbaa40").err.find("T103"), std::string::npos);
+}
+
 // The frame below is that of msaa8x; what selective supersampling lights beyond it counts like any other
 // light.
 TEST_F(RunTest, FurtherSamplesCountAsShaded) {

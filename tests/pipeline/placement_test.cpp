@@ -114,6 +114,28 @@ TEST_F(ScenePlacement, HugeVerticesUnderATinyScaleMeetInTheMiddle) {
   EXPECT_FLOAT_EQ(scene.meshes[0].positions[1].x, 1.0f);
 }
 
+// What counts is what is drawn, not the numbers on the way: 1e-30 m under a scale of 1e30 is a meter.
+TEST_F(ScenePlacement, TinyVerticesUnderAHugeScaleAreAsGoodAsOthers) {
+  const auto box = [&](double vertices, const std::vector<double>& scales) {
+    GlbBuilder glb;
+    std::vector<float> corners = test::square_positions();
+    for (float& c : corners) c = static_cast<float>(c * vertices);
+    glb.add_attribute("POSITION", corners, "VEC3", 3);
+    glb.primitive()["mode"] = 5;
+    for (std::size_t i = 0; i < scales.size(); ++i) {
+      glb.root["nodes"][i]["scale"] = {scales[i], scales[i], scales[i]};
+      if (i > 0) glb.root["nodes"][i]["children"] = {i - 1};
+    }
+    glb.root["scenes"][0]["nodes"] = {scales.size() - 1};
+    return stats(load(glb)).bounds_max;
+  };
+  const glm::vec3 plain = box(1.0, {1.0});
+  for (const double unit : {1e-20, 1e-30, 1e-35})
+    EXPECT_LT(glm::length(box(unit, {1.0 / unit}) - plain), 1e-6f) << unit;
+  EXPECT_LT(glm::length(box(1.0, {1e-20, 1e20}) - plain), 1e-6f);
+  EXPECT_LT(glm::length(box(1.0, {1e40, 1e-60, 1e20}) - plain), 1e-6f);
+}
+
 TEST_F(ScenePlacement, ACameraFarFromATinySceneStaysInRange) {
   GlbBuilder glb = scene_below(json::object());
   glb.root["nodes"][0]["scale"] = {1e-9, 1e-9, 1e-9};

@@ -33,8 +33,8 @@ constexpr MessageCode kMixed = {"T199", "pixels hold several colors",
                                 "The resolve averaged them. Nothing is wrong: this is the skeleton's note."};
 
 /// What a user should know of a frame, from its options and its counts.
-std::vector<Diagnostic> notes(const SkeletonOptions& options, const WorkTrace& trace) {
-  const std::uint64_t mixed = total(trace).technique[SkeletonCounters::skeleton_mixed_pixels];
+std::vector<Diagnostic> notes(const SkeletonOptions& options, const DrawnFrame& frame) {
+  const std::uint64_t mixed = total(frame.trace).technique[SkeletonCounters::skeleton_mixed_pixels];
   if (mixed == 0) return {};
   Diagnostic note;
   note.severity = Severity::note;
