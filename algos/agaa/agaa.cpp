@@ -247,6 +247,7 @@ class Builder {
     u->diffuse = o_.diffuse;
     u->separate_gloss = separate_gloss();
     u->light_variance = o_.light_variance;
+    u->on_receiver = o_.shadow_axis == AgaaShadowAxis::receiver;
     u->covariance = o_.shadow_axis == AgaaShadowAxis::places;
     // The rows of view z and w hold no x and y: projections keep the planes of equal depth.
     const glm::mat4& m = parts_.view_from_clip;
@@ -273,7 +274,7 @@ class Builder {
       u->lighting.shadow_slot = static_cast<int>(pass.sampled.size());
       pass.sampled.push_back(parts_.shadow_map);
     }
-    pass.fragment = &agaa_shade_program(o_.ndf, atomic_);
+    pass.fragment = &agaa_shade_program({o_.ndf, atomic_, u->on_receiver, parts_.lighting.extended});
     pass.uniforms = std::move(u);
   }
 

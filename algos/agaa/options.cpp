@@ -56,8 +56,10 @@ void describe(OptionList& list, AgaaOptions& o) {
   list.choice("plane_path", o.plane_path, "auto|on|off",
               "native samples: depth tiles that are compressed to few planes take those for aggregates");
   list.choice("a2c_dither", o.alpha_dither, "off|on", "alpha to coverage rounds by 2x2 pixels");
-  list.choice("shadow_axis", o.shadow_axis, "depth|places",
-              "along which shadows are filtered: the depths of an aggregate's samples, or their places");
+  list.choice(
+      "shadow_axis", o.shadow_axis, "depth|places|receiver",
+      "along which shadows are filtered: the pixel's ray by the samples' depths, the main axis of their "
+      "places, or where their places go with their depths, which stays on a plane");
 }
 
 }  // namespace hwsim::algos

@@ -16,7 +16,7 @@ enum class AgaaMeanNormal : std::uint8_t { unit, raw };        ///< in the searc
 enum class AgaaSeedSum : std::uint8_t { distances, squares };  ///< by which further seeds are found
 enum class AgaaAccumulate : std::uint8_t { automatic, blend, atomics };
 enum class AgaaPlanePath : std::uint8_t { automatic, on, off };
-enum class AgaaShadowAxis : std::uint8_t { depth, places };
+enum class AgaaShadowAxis : std::uint8_t { depth, places, receiver };
 
 struct AgaaOptions {
   int aggregates = 2;
@@ -43,7 +43,7 @@ struct AgaaOptions {
   bool centroid = true;
   AgaaPlanePath plane_path = AgaaPlanePath::automatic;
   bool alpha_dither = true;
-  AgaaShadowAxis shadow_axis = AgaaShadowAxis::depth;
+  AgaaShadowAxis shadow_axis = AgaaShadowAxis::receiver;
 };
 void describe(OptionList& list, AgaaOptions& o);
 

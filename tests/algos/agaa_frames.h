@@ -1,5 +1,6 @@
 #pragma once
 // Small scenes for AGAA, and its images plane by plane.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -62,6 +63,7 @@ struct Shot {
   std::string technique;
   GpuFeatures features = test_features();
   int width = kWidth, height = kHeight;
+  int shadow_map_px = 0;  ///< 0: no shadows
 };
 
 inline pipeline::FrameGraph build(const Shot& run) {
@@ -70,7 +72,8 @@ inline pipeline::FrameGraph build(const Shot& run) {
   request.width_px = run.width;
   request.height_px = run.height;
   request.features = run.features;
-  request.shadows = false;
+  request.shadows = run.shadow_map_px > 0;
+  request.shadow_map_px = std::max(run.shadow_map_px, 16);
   return algos::build_frame(algos::parse_technique(run.technique), request);
 }
 

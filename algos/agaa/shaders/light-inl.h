@@ -59,8 +59,8 @@ class AggregateLight {
   }
 
  private:
-  // Mean and main axis of the samples' positions: along the pixel's ray, from the depths alone (the
-  // paper's section 3.5.3: what it does in practice), or of their covariance.
+  // Mean and main axis of the samples' positions: along the pixel's ray, from the depths alone, that of
+  // places with depths, or of their covariance (the paper's section 3.5.3).
   void find_place(const AggregateRecord<F, I>& r) {
     if (u_.aggregate.targets.moments >= 0) {
       place_along_ray(r.depth, r.depth2 - r.depth * r.depth);
@@ -87,6 +87,7 @@ class AggregateLight {
     const I x = s_.pixel_x(), y = s_.pixel_y();
     const glm::vec4& d = u_.depth_of_z;
     F first(0.0f), sum(0.0f), squares(0.0f), count(0.0f);
+    Slope slope{F(0.0f), F(0.0f), F(0.0f), F(0.0f)};
     s_.loop(kDepthBlock, u_.covariance ? 0 : u_.aggregate.samples, mask_, [&](int i) HWY_ATTR {
       const F z = s_.load_image(u_.depth_slot, x, y, I(i)).x;
       const M in = has_sample(r, x, y, i) & (z < F(1.0f));
@@ -96,10 +97,41 @@ class AggregateLight {
       count = count + select(in, F(1.0f), F(0.0f));
       sum = sum + from_first;
       squares = squares + from_first * from_first;
+      if (u_.on_receiver) slope.add(u_.positions[static_cast<std::size_t>(i)], in, from_first);
     });
     const F share = F(1.0f) / max(count, F(1.0f));
     const F mean = sum * share;
-    place_along_ray(first + mean, squares * share - mean * mean);
+    const F variance = squares * share - mean * mean;
+    place_along_ray(first + mean, variance);
+    if (u_.on_receiver) keep_on_receiver(slope, share, mean, first + mean, variance);
+  }
+
+  /// Sums over an aggregate's samples: their offsets in the pixel, and those times depth.
+  struct Slope {
+    F x, y, zx, zy;
+    void add(pipeline::SamplePosition at, M in, F depth) {
+      const F dx = select(in, F(static_cast<float>(at.x) * 0.0625f), F(0.0f)),
+              dy = select(in, F(static_cast<float>(at.y) * 0.0625f), F(0.0f));
+      x = x + dx;
+      y = y + dy;
+      zx = zx + dx * depth;
+      zy = zy + dy * depth;
+    }
+  };
+
+  /// The samples' mean place, and how it moves where their depth grows by a standard deviation: the
+  /// covariance of places and depths. On one plane both lie in the plane, so that no tap goes below it; of
+  /// samples whose depths have nothing to do with where in the pixel they are, the axis is the pixel's ray.
+  /// `mean`: of depths from the first one; `depth`: of depths.
+  void keep_on_receiver(const Slope& slope, F share, F mean, F depth, F variance) {
+    const PixelRays& rays = u_.aggregate.rays;
+    const F x = slope.x * share, y = slope.y * share;
+    const F zx = slope.zx * share - mean * x, zy = slope.zy * share - mean * y;
+    const Vec3<F> per_x = constant<F>(rays.origin_per_x) + constant<F>(rays.per_x) * depth,
+                  per_y = constant<F>(rays.origin_per_y) + constant<F>(rays.per_y) * depth;
+    from_center_ = per_x * x + per_y * y + constant<F>(rays.per_x) * zx + constant<F>(rays.per_y) * zy;
+    const F inv_deviation = rsqrt(max(variance, F(1e-20f)));
+    spread_ = spread_ + (per_x * zx + per_y * zy) * inv_deviation;
   }
 
   void place_by_covariance(const AggregateRecord<F, I>& r) {
@@ -329,9 +361,10 @@ class AggregateLight {
   /// Taps along the main axis, each compared as an ordinary receiver.
   F filtered_shadow() {
     F visible(0.0f);
+    const Vec3<F> middle = u_.on_receiver ? surface_.position + from_center_ : surface_.position;
     s_.loop(kTapBlock, u_.shadow_taps, mask_, [&](int i) HWY_ATTR {
       const auto tap = static_cast<std::size_t>(i);
-      const Vec3<F> p = surface_.position + spread_ * F(u_.tap_position[tap]);
+      const Vec3<F> p = middle + spread_ * F(u_.tap_position[tap]);
       visible =
           visible + lanes::shadow_visibility(s_, u_.lighting, p, surface_.normal) * F(u_.tap_weight[tap]);
     });
@@ -345,6 +378,7 @@ class AggregateLight {
   PixelBasis<F> basis_{};
   lanes::Surface<F> surface_{};
   Vec3<F> place_{}, spread_{};  ///< relative to the eye; standard deviation along the main axis
+  Vec3<F> from_center_{};       ///< the samples' mean place, from `place_` on the pixel's middle ray
   SymmetricMatrix<F> covariance_{};
   F length_{}, diffuse_length_{}, own_scale_{};
   DiffuseLobe<F> lobe_{};

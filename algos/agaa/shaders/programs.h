@@ -101,6 +101,8 @@ struct ShadeUniforms {
   std::array<pipeline::SamplePosition, 32> positions{};
   DiffuseFilter diffuse = DiffuseFilter::folded;
   bool separate_gloss = false, light_variance = false;
+  bool on_receiver =
+      false;  ///< shadows: the axis along which places go with depths; else along the pixel's ray
   bool covariance = false;  ///< covariance of the samples' places is used; else that of their depths alone
   glm::vec4 depth_of_z{0.0f, 1.0f, 1.0f, 0.0f};  ///< view depth of z: (x + y z) / (z + w z)
   int shadow_taps = 4;
@@ -108,7 +110,12 @@ struct ShadeUniforms {
   int visible_normals = 8;
   std::array<glm::vec3, kMaxVisibleNormals> disk{};  ///< points on the hemisphere over the unit disk
 };
+/// What of its uniforms the shader's operations depend on; `buffer`: aggregates are in a storage buffer.
+struct ShadeVariant {
+  Ndf ndf = Ndf::toksvig;
+  bool buffer = false, on_receiver = false, extended = false;
+};
 /// Pass 4: lights every aggregate and puts them over the background.
-const pipeline::FragmentProgram& agaa_shade_program(Ndf ndf, bool buffer);
+const pipeline::FragmentProgram& agaa_shade_program(const ShadeVariant& variant);
 
 }  // namespace hwsim::algos

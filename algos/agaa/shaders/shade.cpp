@@ -98,22 +98,29 @@ void call_shade(FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_shad
 void call_shade_buffer(FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_shade_buffer)(b, u); }
 
 template <bool kBuffer>
-FragmentProgram describe_shade(Ndf ndf, void (*run)(FragmentBatch&, const void*)) {
+FragmentProgram describe_shade(const ShadeVariant& variant, void (*run)(FragmentBatch&, const void*)) {
   ShadeUniforms uniforms;
-  uniforms.aggregate.ndf = ndf;
-  if (ndf != Ndf::toksvig) uniforms.aggregate.targets.shape_rest = 3;
-  if (ndf == Ndf::sggx) uniforms.aggregate.targets.luma = 4;
+  uniforms.aggregate.ndf = variant.ndf;
+  uniforms.on_receiver = variant.on_receiver;
+  uniforms.lighting.extended = variant.extended;
+  if (variant.ndf != Ndf::toksvig) uniforms.aggregate.targets.shape_rest = 3;
+  if (variant.ndf == Ndf::sggx) uniforms.aggregate.targets.luma = 4;
   return pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::ShadeShader<kBuffer>>(
       "agaa_shade", run, uniforms);
 }
 }  // namespace
 
-const FragmentProgram& agaa_shade_program(Ndf ndf, bool buffer) {
-  static const std::array<FragmentProgram, 6> programs = {
-      describe_shade<false>(Ndf::toksvig, call_shade), describe_shade<true>(Ndf::toksvig, call_shade_buffer),
-      describe_shade<false>(Ndf::lean, call_shade),    describe_shade<true>(Ndf::lean, call_shade_buffer),
-      describe_shade<false>(Ndf::sggx, call_shade),    describe_shade<true>(Ndf::sggx, call_shade_buffer)};
-  return programs[static_cast<std::size_t>(ndf) * 2 + (buffer ? 1 : 0)];
+const FragmentProgram& agaa_shade_program(const ShadeVariant& variant) {
+  static const std::array<FragmentProgram, 24> programs = [] {
+    std::array<FragmentProgram, 24> all;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const ShadeVariant v{static_cast<Ndf>(i / 8), (i & 1) != 0, (i & 2) != 0, (i & 4) != 0};
+      all[i] = v.buffer ? describe_shade<true>(v, call_shade_buffer) : describe_shade<false>(v, call_shade);
+    }
+    return all;
+  }();
+  return programs[static_cast<std::size_t>(variant.ndf) * 8 + (variant.buffer ? 1u : 0u) +
+                  (variant.on_receiver ? 2u : 0u) + (variant.extended ? 4u : 0u)];
 }
 
 }  // namespace hwsim::algos
