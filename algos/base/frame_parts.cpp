@@ -6,6 +6,7 @@
 
 #include "pipeline/emulate/material_views.h"
 #include "pipeline/scene/shadow_view.h"
+#include "pipeline/scene/special_surfaces.h"
 #include "pipeline/shade/mesh_vertex.h"
 
 namespace hwsim::algos {
@@ -250,6 +251,7 @@ LightingUniforms frame_lighting(const FrameRequest& request) {
   const Scene& scene = *request.scene;
   LightingUniforms lighting =
       make_lighting(scene, scene.cameras.at(static_cast<std::size_t>(request.camera)));
+  if (!request.metal_ambient) lighting.extended = has_unlit(scene);
   switch (request.lights) {
     case LightProfile::scene:
       add_point_lights(request, request.point_lights, lighting);

@@ -37,6 +37,7 @@ struct FrameRequest {
   LightProfile lights = LightProfile::scene;
   bool shadows = true;  ///< a shadow map for the scene's shadow caster
   int shadow_map_px = 2048;
+  bool metal_ambient = true;  ///< metals reflect ambient light (pipeline::LightingUniforms::extended)
   /// A modifier's: parts of the scene that it draws in its own way. Null: bases draw everything.
   std::shared_ptr<const SeparateDraws> separate;
   /// Stands for the scene, which is empty then: sRGB codes of a finished frame. Only filters work on it.

@@ -24,7 +24,7 @@ FrameGraph build_points(const FrameRequest& request, const SssPointOptions& opti
       options.points == SssPointSource::tessellator ||
       (options.points == SssPointSource::automatic && request.features.tessellator_points);
   add_sss_batches(pass, f, [&](DrawBatch& batch, SssVertex vertex) {
-    const int scalars = 4 + sss_point_shading_program(vertex).varying_scalars;
+    const int scalars = 4 + sss_point_shading_program(vertex, f.uniforms.lighting.extended).varying_scalars;
     const int limit =
         tessellated ? static_cast<int>(f.uniforms.samples_max) : request.functional.gs_max_scalars / scalars;
     const int most = std::max(1, std::min(static_cast<int>(f.uniforms.samples_max), limit));
@@ -32,7 +32,7 @@ FrameGraph build_points(const FrameRequest& request, const SssPointOptions& opti
     auto uniforms = std::make_shared<SssUniforms>(f.uniforms);
     uniforms->samples_max = static_cast<float>(most);
     batch.geometry = &sss_points_program(vertex, most);
-    batch.fragment = &sss_point_shading_program(vertex);
+    batch.fragment = &sss_point_shading_program(vertex, f.uniforms.lighting.extended);
     batch.geometry_uniforms = uniforms;
     batch.fragment_uniforms = uniforms;
     batch.state.blend = {{true, BlendFactor::one, BlendFactor::one, BlendFactor::one, BlendFactor::one, 0xf}};
@@ -66,7 +66,8 @@ FrameGraph build_compute(const FrameRequest& request, const SssComputeOptions& o
   const BufferId sums = graph.add_buffer({"sums", static_cast<std::uint64_t>(words)});
   add_fill(graph, "sum_clear", {sums}, 1, {words, 0, false});
   Pass& pass = graph.add_pass("sample", PassKind::compute);
-  pass.compute = &sss_compute_program(floats);
+  pass.compute = &sss_compute_program(
+      {floats, f.uniforms.vertex_words == SurfaceVaryings::kFull, f.uniforms.lighting.extended});
   pass.groups_x = data.group_count();
   pass.groups_y = 1;
   pass.sampled = sss_slots(f);
@@ -135,7 +136,7 @@ FrameGraph build_lists(const FrameRequest& request, const SssListOptions& option
   pass.storage_written = 7;
   add_sss_batches(pass, f, [&](DrawBatch& batch, SssVertex vertex) {
     batch.geometry = &sss_boxes_program(vertex);
-    batch.fragment = &sss_list_program(vertex, u.by_place());
+    batch.fragment = &sss_list_program(vertex, u.by_place(), u.lighting.extended);
     batch.geometry_uniforms = batch.fragment_uniforms = std::make_shared<SssUniforms>(u);
     batch.state.raster.conservative = u.conservative_raster;
   });

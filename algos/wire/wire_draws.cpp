@@ -97,7 +97,7 @@ DrawBatch WireDraws::batch(const FrameParts& parts, const ForwardTarget& target,
   batch.state.raster.centroid = true;  // the paper calls it crucial: normals turn within a pixel
   batch.state.depth = {true, part == WirePart::wide || depth_ == WireDepth::all, Compare::less_equal};
   if (part != WirePart::wide) batch.state.blend = {blend_over()};
-  batch.fragment = &wire_program(part);
+  batch.fragment = &wire_program(part, parts.lighting.extended);
   WireUniforms uniforms;
   uniforms.lighting = parts.lighting;
   uniforms.pixel_scale = pixel_scale(parts.camera, target);

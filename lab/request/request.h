@@ -36,6 +36,7 @@ struct View {
   std::string lights = "scene";
   bool shadows = true;
   int shadow_map_px = 2048;
+  bool metal_ambient = true;
   double exposure = 0.0;  ///< factor on the file's lights; 0: automatic (pipeline::SceneLoadOptions)
   int memory_mib = 2048;  ///< that loading the scene may take
   bool operator==(const View&) const = default;
@@ -87,8 +88,8 @@ struct Field {
 
 template <class Visitor>
 void describe(Visitor& v, View& view) {
-  auto& [scene, resolution, camera, point_lights, light_range, lights, shadows, shadow_map_px, exposure,
-         memory_mib] = view;
+  auto& [scene, resolution, camera, point_lights, light_range, lights, shadows, shadow_map_px, metal_ambient,
+         exposure, memory_mib] = view;
   auto& [width_px, height_px] = resolution;
   // The scene's content and the camera's index stand in the keys of caches, not what the user called them.
   v.field(
@@ -127,6 +128,12 @@ void describe(Visitor& v, View& view) {
            "shadow_map_px",
            kWork},
           shadow_map_px);
+  v.field({{"metal_ambient", 0, 1, kNoFlags,
+            "metals reflect ambient light; the papers' shaders had no such term"},
+           "scene",
+           "metal_ambient",
+           kWork | kReference},
+          metal_ambient);
   // Part of the scene's content, as the loader sees it.
   v.field({{"exposure", 0, 1e12, kNoFlags,
             "factor of the file's lights; 0: 1, or less where they are in photometric units"},

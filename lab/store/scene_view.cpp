@@ -228,6 +228,7 @@ algos::FrameRequest SceneView::frame_request() {
   request.lights = light_profile_from_name(plan_.lights).value_or(algos::LightProfile::scene);
   request.shadows = plan_.shadows;
   request.shadow_map_px = plan_.shadow_map_px;
+  request.metal_ambient = plan_.metal_ambient;
   request.image = image_;
   return request;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/scene/special_surfaces.h"
+
 namespace hwsim::pipeline {
 namespace {
 
@@ -25,12 +27,7 @@ PointLight make_point(const Light& light) {
 }  // namespace
 
 bool needs_extended_shading(const Scene& scene) {
-  const auto is_extended = [&](const Mesh::Part& part) {
-    return scene.materials[static_cast<std::size_t>(part.material)].model == ShadingModel::unlit;
-  };
-  return std::any_of(scene.meshes.begin(), scene.meshes.end(), [&](const Mesh& mesh) {
-    return std::any_of(mesh.parts.begin(), mesh.parts.end(), is_extended);
-  });
+  return has_unlit(scene) || has_metal_in_ambient_light(scene);
 }
 
 LightingUniforms make_lighting(const Scene& scene, const Camera& camera) {

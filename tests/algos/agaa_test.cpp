@@ -296,6 +296,7 @@ TEST(Agaa, RoughFlatLobesAreTheMaterialsOwn) {
   pipeline::Scene rough = patches({{-5, 5, 0, {0.9f, 0.9f, 0.9f}}});
   rough.materials.front().roughness = 0.93f;  // exponent 0.67
   rough.materials.front().metallic = 0.5f;
+  rough.ambient = glm::vec3(0.0f);  // the lobe alone
   const auto scene = share(std::move(rough));
   const pipeline::Image forward = render({scene, "none"}).color;
   EXPECT_LT(largest_difference(forward, render({scene, "agaa"}).color), 1.5f / 255.0f);

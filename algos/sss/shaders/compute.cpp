@@ -136,10 +136,13 @@ class PointThread {
 
 /// One pass through every block, for the operation counts.
 template <bool kFloat>
-pipeline::ComputeProgram describe_sss_compute(void (*run)(pipeline::GroupBatch&, const void*)) {
+pipeline::ComputeProgram describe_sss_compute(const SssComputeVariant& variant,
+                                              void (*run)(pipeline::GroupBatch&, const void*)) {
   lanes::CountFragment s;
   SssUniforms u;
-  u.vertex_words = pipeline::SurfaceVaryings::kBasic;
+  u.vertex_words =
+      variant.full_vertices ? pipeline::SurfaceVaryings::kFull : pipeline::SurfaceVaryings::kBasic;
+  u.lighting.extended = variant.extended;
   const SssDraw draw;
   PointThread<lanes::CountFragment, kFloat>(s, u, draw).run(s.pixel_x(), s.pixel_y(), s.valid());
   pipeline::ComputeProgram program;
@@ -221,17 +224,31 @@ HWY_EXPORT(run_sss_compute);
 HWY_EXPORT(run_sss_compute_float);
 HWY_EXPORT(run_sss_clear);
 
-const pipeline::ComputeProgram& sss_compute_program(bool floats) {
-  static const pipeline::ComputeProgram programs[] = {
-      HWY_NAMESPACE::describe_sss_compute<false>([](pipeline::GroupBatch& g, const void* u) {
-        HWY_DYNAMIC_DISPATCH(run_sss_compute)
-        (g, u);
-      }),
-      HWY_NAMESPACE::describe_sss_compute<true>([](pipeline::GroupBatch& g, const void* u) {
-        HWY_DYNAMIC_DISPATCH(run_sss_compute_float)
-        (g, u);
-      })};
-  return programs[floats ? 1 : 0];
+namespace {
+
+pipeline::ComputeProgram describe_compute(const SssComputeVariant& variant) {
+  if (variant.floats)
+    return HWY_NAMESPACE::describe_sss_compute<true>(variant, [](pipeline::GroupBatch& g, const void* u) {
+      HWY_DYNAMIC_DISPATCH(run_sss_compute_float)
+      (g, u);
+    });
+  return HWY_NAMESPACE::describe_sss_compute<false>(variant, [](pipeline::GroupBatch& g, const void* u) {
+    HWY_DYNAMIC_DISPATCH(run_sss_compute)
+    (g, u);
+  });
+}
+
+}  // namespace
+
+const pipeline::ComputeProgram& sss_compute_program(const SssComputeVariant& variant) {
+  static const auto programs = [] {
+    std::array<pipeline::ComputeProgram, 8> all;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      all[i] = describe_compute({(i & 1) != 0, (i & 2) != 0, (i & 4) != 0});
+    return all;
+  }();
+  return programs[(variant.floats ? 1u : 0u) + (variant.full_vertices ? 2u : 0u) +
+                  (variant.extended ? 4u : 0u)];
 }
 
 const pipeline::ComputeProgram& sss_clear_program() {

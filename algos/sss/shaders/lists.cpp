@@ -312,8 +312,9 @@ HWY_EXPORT(run_lists);
 namespace {
 
 template <SssVertex kVertex>
-pipeline::FragmentProgram describe_list(bool by_place) {
+pipeline::FragmentProgram describe_list(bool by_place, bool extended) {
   SssUniforms u;
+  u.lighting.extended = extended;
   u.node_words = by_place ? kSssPlaceNodeWords : 4;
   pipeline::FragmentProgram program =
       pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::ListShader<kVertex>>(
@@ -337,10 +338,12 @@ const pipeline::GeometryProgram& sss_boxes_program(SssVertex vertex) {
   return programs[static_cast<std::size_t>(vertex)];
 }
 
-const pipeline::FragmentProgram& sss_list_program(SssVertex vertex, bool by_place) {
-  static const auto without = for_each_vertex([](auto v) { return describe_list<v()>(false); });
-  static const auto with = for_each_vertex([](auto v) { return describe_list<v()>(true); });
-  return (by_place ? with : without)[static_cast<std::size_t>(vertex)];
+const pipeline::FragmentProgram& sss_list_program(SssVertex vertex, bool by_place, bool extended) {
+  static const auto of = [](bool places, bool more) {
+    return for_each_vertex([&](auto v) { return describe_list<v()>(places, more); });
+  };
+  static const std::array programs = {of(false, false), of(true, false), of(false, true), of(true, true)};
+  return programs[(by_place ? 1u : 0u) + (extended ? 2u : 0u)][static_cast<std::size_t>(vertex)];
 }
 
 }  // namespace hwsim::algos

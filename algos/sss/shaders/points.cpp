@@ -172,12 +172,16 @@ std::vector<pipeline::GeometryProgram> describe_points() {
 }
 
 template <SssVertex kVertex>
-pipeline::FragmentProgram describe_shading() {
+pipeline::FragmentProgram describe_shading(bool extended) {
+  SssUniforms uniforms;
+  uniforms.lighting.extended = extended;
   pipeline::FragmentProgram program =
       pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::PointShadingShader<kVertex>>(
-          "sss_point", [](pipeline::FragmentBatch& b, const void* u) {
+          "sss_point",
+          [](pipeline::FragmentBatch& b, const void* u) {
             HWY_DYNAMIC_DISPATCH(run_point_shading)(kVertex, b, u);
-          });
+          },
+          uniforms);
   program.varying_scalars = HWY_NAMESPACE::point_scalars(kVertex);
   return program;
 }
@@ -188,9 +192,10 @@ const pipeline::GeometryProgram& sss_points_program(SssVertex vertex, int points
   return programs[static_cast<std::size_t>(vertex)].at(static_cast<std::size_t>(points_max) - 1);
 }
 
-const pipeline::FragmentProgram& sss_point_shading_program(SssVertex vertex) {
-  static const auto programs = for_each_vertex([](auto v) { return describe_shading<v()>(); });
-  return programs[static_cast<std::size_t>(vertex)];
+const pipeline::FragmentProgram& sss_point_shading_program(SssVertex vertex, bool extended) {
+  static const auto plain = for_each_vertex([](auto v) { return describe_shading<v()>(false); });
+  static const auto more = for_each_vertex([](auto v) { return describe_shading<v()>(true); });
+  return (extended ? more : plain)[static_cast<std::size_t>(vertex)];
 }
 
 }  // namespace hwsim::algos

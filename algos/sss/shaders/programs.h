@@ -97,13 +97,18 @@ inline constexpr int kSssFrameSlot = 0, kSssSumSlot = 1;
 
 // Points from a geometry shader
 const pipeline::GeometryProgram& sss_points_program(SssVertex vertex, int points_max);
-const pipeline::FragmentProgram& sss_point_shading_program(SssVertex vertex);
+/// Here and below, `extended` is the lighting's.
+const pipeline::FragmentProgram& sss_point_shading_program(SssVertex vertex, bool extended);
 
 // Points from a compute shader. Buffers: triangles, vertices, groups, sums.
 inline constexpr int kSssTriangleBuffer = 0, kSssVertexBuffer = 1, kSssGroupBuffer = 2, kSssSumBuffer = 3;
 inline constexpr int kSssGroupWords = 4;  ///< first triangle, triangles, draw, first triangle in the draw
-// Sums by integer atomics in fixed point, or by atomics of floats (GpuFeatures::float_atomics).
-const pipeline::ComputeProgram& sss_compute_program(bool floats);
+/// What the points of a frame take of the shader: sums by atomics of floats (GpuFeatures::float_atomics) or
+/// by integer ones in fixed point; vertices with all attributes; LightingUniforms::extended.
+struct SssComputeVariant {
+  bool floats = false, full_vertices = false, extended = false;
+};
+const pipeline::ComputeProgram& sss_compute_program(const SssComputeVariant& variant);
 
 /// Fills buffer 0 with a word, and buffer 2, if `counter`, with one zero.
 struct SssClearUniforms {
@@ -117,7 +122,7 @@ inline constexpr int kSssClearWords = 4;  ///< words that an invocation clears
 inline constexpr int kSssHeadBuffer = 0, kSssNodeBuffer = 1, kSssCounterBuffer = 2;
 const pipeline::ComputeProgram& sss_clear_program();
 const pipeline::GeometryProgram& sss_boxes_program(SssVertex vertex);
-const pipeline::FragmentProgram& sss_list_program(SssVertex vertex, bool by_place);
+const pipeline::FragmentProgram& sss_list_program(SssVertex vertex, bool by_place, bool extended);
 const pipeline::FragmentProgram& sss_list_resolve_program(bool by_place);
 
 // The frame under what was sampled

@@ -334,8 +334,9 @@ Vec3<typename S::F> light_point(S& s, const SssUniforms& u, SurfacePoint<S>& poi
   const auto material = lanes::sample_material(point, vertex == SssVertex::full);
   const auto surface =
       lanes::make_surface(material, point.attr3(pipeline::SurfaceVaryings::kPosition), u.lighting.eye);
-  const Vec3<F> c = lanes::occlude_ambient(point, u.lighting, surface,
-                                           lanes::light_surface(point, u.lighting, surface, mask));
+  const Vec3<F> c = lanes::occlude_ambient(
+      point, u.lighting, surface,
+      lanes::light_surface(point, u.lighting, surface, lanes::lights_reach(point, mask)));
   s.count(SssCounters::sss_shaded_samples, mask);
   const F most(u.radiance_max);
   const auto limited = [&](F x) HWY_ATTR { return min(max(x, F(0.0f)), most); };

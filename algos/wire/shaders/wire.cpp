@@ -1,5 +1,7 @@
 #include "algos/wire/shaders/wire.h"
 
+#include <array>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "algos/wire/shaders/wire.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -95,8 +97,9 @@ struct WireShader {
     const F share = lanes::saturate((true_px - F(1.0f)) * F(1.0f / (u.look.full_light_px - 1.0f)));
     if (u.look.flatten) material.normal = flattened(s, u, position, material.normal, share);
     const auto surface = lanes::make_surface(material, position, u.lighting.eye);
-    const Vec3<F> light = u.look.half_lambert ? half_lambert(s, u, surface, share, lit)
-                                              : lanes::light_surface(s, u.lighting, surface, lit);
+    const auto reached = lanes::lights_reach(s, lit);
+    const Vec3<F> light = u.look.half_lambert ? half_lambert(s, u, surface, share, reached)
+                                              : lanes::light_surface(s, u.lighting, surface, reached);
     const Vec3<F> c = lanes::occlude_ambient(s, u.lighting, surface, light);
     s.output(0, {c.x, c.y, c.z, material.base.w * fade});
   }
@@ -141,9 +144,10 @@ using pipeline::FragmentBatch;
 using pipeline::FragmentProgram;
 
 template <WirePart kPart>
-FragmentProgram describe_wire(void (*run)(FragmentBatch&, const void*)) {
+FragmentProgram describe_wire(bool extended, void (*run)(FragmentBatch&, const void*)) {
   pipeline::HWY_NAMESPACE::CountFragment counter;
   WireUniforms uniforms;  // with all that the options can ask for
+  uniforms.lighting.extended = extended;
   uniforms.look.half_lambert = uniforms.look.flatten = uniforms.look.fade_per_pixel = true;
   HWY_NAMESPACE::WireShader<kPart>::run(counter, uniforms);
   FragmentProgram program;
@@ -170,18 +174,25 @@ const pipeline::VertexProgram& wire_vertex_program() {
   return program;
 }
 
-const FragmentProgram& wire_program(WirePart part) {
-  static const FragmentProgram programs[] = {
-      describe_wire<WirePart::all>([](FragmentBatch& b, const void* u) {
-        HWY_DYNAMIC_DISPATCH(run_wire_all)(b, u);
-      }),
-      describe_wire<WirePart::wide>([](FragmentBatch& b, const void* u) {
-        HWY_DYNAMIC_DISPATCH(run_wire_wide)(b, u);
-      }),
-      describe_wire<WirePart::faded>([](FragmentBatch& b, const void* u) {
-        HWY_DYNAMIC_DISPATCH(run_wire_faded)(b, u);
-      })};
-  return programs[static_cast<std::size_t>(part)];
+namespace {
+
+std::array<FragmentProgram, 3> describe_parts(bool extended) {
+  return {describe_wire<WirePart::all>(
+              extended, [](FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_wire_all)
+                                                              (b, u); }),
+          describe_wire<WirePart::wide>(
+              extended, [](FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_wire_wide)
+                                                              (b, u); }),
+          describe_wire<WirePart::faded>(extended, [](FragmentBatch& b, const void* u) {
+            HWY_DYNAMIC_DISPATCH(run_wire_faded)(b, u);
+          })};
+}
+
+}  // namespace
+
+const FragmentProgram& wire_program(WirePart part, bool extended) {
+  static const std::array programs = {describe_parts(false), describe_parts(true)};
+  return programs[extended ? 1u : 0u][static_cast<std::size_t>(part)];
 }
 
 }  // namespace hwsim::algos

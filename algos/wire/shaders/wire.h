@@ -36,6 +36,7 @@ struct WireVaryings {
 enum class WirePart { all, wide, faded };  ///< fragments of wires above, or below, the least width
 
 const pipeline::VertexProgram& wire_vertex_program();
-const pipeline::FragmentProgram& wire_program(WirePart part);
+/// `extended`: the lighting's.
+const pipeline::FragmentProgram& wire_program(WirePart part, bool extended);
 
 }  // namespace hwsim::algos
