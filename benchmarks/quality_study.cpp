@@ -288,7 +288,7 @@ void run(const std::string& name, const Study& study) {
   }
   FrameRequest request = open_study({.scene = name,
                                      .resolution = {study.width_px, study.height_px},
-                                     .shadows = false,  // a shadow map's own error hides the edges'
+                                     .shadows = false,          // a shadow map's own error hides the edges'
                                      .metal_ambient = false});  // as the papers' shaders have it
   request.features = every_feature(8);
   if (study.errors || study.kept) {
