@@ -177,12 +177,16 @@ const pipeline::VertexProgram& wire_vertex_program() {
 namespace {
 
 std::array<FragmentProgram, 3> describe_parts(bool extended) {
-  return {describe_wire<WirePart::all>(
-              extended, [](FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_wire_all)
-                                                              (b, u); }),
-          describe_wire<WirePart::wide>(
-              extended, [](FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_wire_wide)
-                                                              (b, u); }),
+  return {describe_wire<WirePart::all>(extended,
+                                       [](FragmentBatch& b, const void* u) {
+                                         HWY_DYNAMIC_DISPATCH(run_wire_all)
+                                         (b, u);
+                                       }),
+          describe_wire<WirePart::wide>(extended,
+                                        [](FragmentBatch& b, const void* u) {
+                                          HWY_DYNAMIC_DISPATCH(run_wire_wide)
+                                          (b, u);
+                                        }),
           describe_wire<WirePart::faded>(extended, [](FragmentBatch& b, const void* u) {
             HWY_DYNAMIC_DISPATCH(run_wire_faded)(b, u);
           })};
