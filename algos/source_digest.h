@@ -1,5 +1,5 @@
 #pragma once
-// The digest of the sources that a trace depends on.
+// Digests of the sources that a trace and a reference depend on.
 #include <string_view>
 
 namespace hwsim::algos {
@@ -8,5 +8,8 @@ namespace hwsim::algos {
 /// cached traces, so that no trace outlives the code that made it. A version number would have to be
 /// remembered.
 std::string_view source_digest();
+
+/// The same of the ray-traced references, for the key of cached ones.
+std::string_view reference_digest();
 
 }  // namespace hwsim::algos

@@ -5,7 +5,11 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
+#include <filesystem>
+#include <new>
+#include <system_error>
 
 #include "cli/arguments/arguments.h"
 #include "cli/commands/commands.h"
@@ -67,6 +71,35 @@ ExitStatus report_internal(const char* what, Log& log) {
   return ExitStatus::run_failed;
 }
 
+ExitStatus report_shortage(const std::string& what, Log& log) {
+  log.report(
+      problem("X002", what, "", "a smaller scene, a smaller --resolution, fewer --jobs, or a larger limit"));
+  return ExitStatus::run_failed;
+}
+
+/// Whatever a folder or a disk does is no mistake in hwsim.
+Diagnostic file_problem(const std::filesystem::filesystem_error& error) {
+  Diagnostic d = problem("U010", "cannot use the file or folder: " + error.code().message(), "",
+                         "check that it exists, is what is asked for, may be used and has space");
+  d.place.file = error.path1().string();
+  return d;
+}
+
+/// The last resort where an exception leaves a thread: memory that is not there is said, not a crash.
+[[noreturn]] void end_badly() {
+  const char* text = "error[X001]: internal error: an exception left a thread\n";
+  try {
+    if (std::current_exception()) std::rethrow_exception(std::current_exception());
+  } catch (const std::bad_alloc&) {
+    text = "error[X002]: out of memory\n   = help: a smaller scene, or a smaller --resolution\n";
+  } catch (const std::system_error&) {
+    text = "error[X002]: the system gives no further thread\n   = help: fewer --jobs, or a larger limit\n";
+  } catch (...) {
+  }
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text, std::strlen(text));
+  ::_exit(static_cast<int>(ExitStatus::run_failed));
+}
+
 ExitStatus run_program(int argc, char** argv) {
   Context context{{argv, argv + argc}, inspect_terminal({}), Log({}, inspect_terminal({}))};
   try {
@@ -78,8 +111,11 @@ ExitStatus run_program(int argc, char** argv) {
   } catch (const InputError& error) {
     return report(error, context.log);
   } catch (const std::bad_alloc&) {
-    context.log.report(problem("X002", "out of memory", "", "a smaller scene, or a smaller --resolution"));
-    return ExitStatus::run_failed;
+    return report_shortage("out of memory", context.log);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return report(InputError(file_problem(error)), context.log);
+  } catch (const std::system_error& error) {  // a thread that the system does not give
+    return report_shortage(error.what(), context.log);
   } catch (const std::exception& error) {
     return report_internal(error.what(), context.log);
   }
@@ -97,6 +133,7 @@ void keep_freed_memory() {
 /// answers would be written into it.
 void guard_streams() {
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is one that cannot be written
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) < 0) std::_Exit(1);
 }
@@ -105,6 +142,7 @@ void guard_streams() {
 }  // namespace hwsim::cli
 
 int main(int argc, char** argv) {
+  std::set_terminate(hwsim::cli::end_badly);
   hwsim::cli::guard_streams();
   hwsim::cli::keep_freed_memory();
   return static_cast<int>(hwsim::cli::run_program(argc, argv));

@@ -48,3 +48,40 @@ function(hwsim_library name)
   target_compile_features(hwsim_${name} PUBLIC cxx_std_20)
   target_link_libraries(hwsim_${name} PRIVATE $<BUILD_INTERFACE:hwsim_options>)
 endfunction()
+
+# hwsim_source_digest(OUT_VARIABLE NAME name HEADER header FUNCTION namespace::function ROOMS folders... [EXCLUDE regex]):
+# sets OUT_VARIABLE to a source file whose function returns a hash of all C++ files below the folders, and of the
+# compiler's name and version. It is written anew, and compiled, only when one of them changes. What was hashed stands in
+# <build>/source_digests/NAME.txt, which a test reads.
+function(hwsim_source_digest out)
+  cmake_parse_arguments(PARSE_ARGV 1 digest "" "NAME;HEADER;FUNCTION;EXCLUDE" "ROOMS")
+  set(files "")
+  foreach(room IN LISTS digest_ROOMS)
+    file(GLOB_RECURSE found CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
+         ${PROJECT_SOURCE_DIR}/${room}/*.cpp ${PROJECT_SOURCE_DIR}/${room}/*.h)
+    list(APPEND files ${found})
+  endforeach()
+  if(digest_EXCLUDE)
+    list(FILTER files EXCLUDE REGEX "${digest_EXCLUDE}")
+  endif()
+  list(SORT files)
+  list(JOIN files "\n" text)
+  set(folder ${PROJECT_BINARY_DIR}/source_digests)
+  set(list_file ${folder}/${digest_NAME}.txt)
+  file(CONFIGURE OUTPUT ${list_file} CONTENT "${text}\n" @ONLY)
+  list(TRANSFORM files PREPEND ${PROJECT_SOURCE_DIR}/)
+  string(REGEX REPLACE "::[a-z_]+$" "" namespace ${digest_FUNCTION})
+  string(REGEX REPLACE "^.*::" "" function ${digest_FUNCTION})
+  set(source ${folder}/${digest_NAME}_digest.cpp)
+  set(script ${PROJECT_SOURCE_DIR}/cmake/WriteSourceDigest.cmake)
+  set(input ${PROJECT_SOURCE_DIR}/cmake/source_digest.cpp.in)
+  add_custom_command(OUTPUT ${folder}/${digest_NAME}.stamp BYPRODUCTS ${source}
+    COMMAND ${CMAKE_COMMAND} -D LIST=${list_file} -D FOLDER=${PROJECT_SOURCE_DIR} -D INPUT=${input} -D OUTPUT=${source}
+            "-D COMPILER=${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}"
+            -D HEADER=${digest_HEADER} -D NAMESPACE=${namespace} -D FUNCTION=${function} -P ${script}
+    COMMAND ${CMAKE_COMMAND} -E touch ${folder}/${digest_NAME}.stamp
+    DEPENDS ${files} ${list_file} ${input} ${script}
+    COMMENT "Hashing the sources of ${digest_NAME}" VERBATIM)
+  # The stamp is named as a source, so that what compiles the byproduct waits for it.
+  set(${out} ${source} ${folder}/${digest_NAME}.stamp PARENT_SCOPE)
+endfunction()

@@ -1,12 +1,11 @@
-# Run at build time: writes OUTPUT from INPUT with a hash of the files listed in LIST (one a line); unchanged text leaves
-# the file alone.
+# Run at build time: writes OUTPUT from INPUT with a hash of COMPILER and of the files below FOLDER that LIST names (one a
+# line); unchanged text leaves the file alone.
 file(STRINGS ${LIST} files)
-set(hashes "")
+set(hashes "${COMPILER}\n")
 foreach(file IN LISTS files)
-  file(SHA256 ${file} hash)
-  get_filename_component(name ${file} NAME)
-  string(APPEND hashes "${name} ${hash}\n")
+  file(SHA256 ${FOLDER}/${file} hash)
+  string(APPEND hashes "${file} ${hash}\n")
 endforeach()
-string(SHA256 HWSIM_SOURCE_DIGEST "${hashes}")
-string(SUBSTRING ${HWSIM_SOURCE_DIGEST} 0 32 HWSIM_SOURCE_DIGEST)
+string(SHA256 DIGEST "${hashes}")
+string(SUBSTRING ${DIGEST} 0 32 DIGEST)
 configure_file(${INPUT} ${OUTPUT} @ONLY)

@@ -295,8 +295,15 @@ std::string_view row_use_name(RowUse use) {
 
 std::vector<PublishedRow> load_published(const std::string& published_dir) {
   std::set<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(published_dir))
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(published_dir, error))
     if (entry.path().extension() == ".csv") files.insert(entry.path());
+  if (files.empty()) {
+    Diagnostic none{.code = "U012", .message = "there are no published tables"};
+    none.place.file = published_dir;
+    none.help = "unset HWSIM_CONFIG_DIR to use the tables that came with hwsim, or copy `published` there";
+    throw InputError(none);
+  }
   std::vector<PublishedRow> rows;
   std::vector<Diagnostic> problems;
   for (const fs::path& path : files) {

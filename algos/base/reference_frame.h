@@ -14,9 +14,6 @@ struct ReferenceFrameOptions {
   std::function<void(double share)> progress{};
 };
 
-/// Raised when the same request gives another image: part of the key of cached references.
-inline constexpr int kReferenceVersion = 2;
-
 pipeline::Image render_reference_frame(const FrameRequest& request, const ReferenceFrameOptions& options);
 
 }  // namespace hwsim::algos

@@ -8,10 +8,25 @@ namespace hwsim::cli {
 
 namespace fs = std::filesystem;
 
-InterruptGuard::InterruptGuard(std::string message) : message_("\n" + std::move(message) + "\n") {
+namespace {
+
+bool is_ignored(int signal) {
+  struct sigaction action {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+sigset_t awaited_signals() {
   sigset_t set;
   sigemptyset(&set);
   for (const int signal : {SIGINT, SIGTERM, SIGUSR2}) sigaddset(&set, signal);
+  if (!is_ignored(SIGHUP)) sigaddset(&set, SIGHUP);
+  return set;
+}
+
+}  // namespace
+
+InterruptGuard::InterruptGuard(std::string message) : message_("\n" + std::move(message) + "\n") {
+  const sigset_t set = awaited_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   thread_ = std::thread([this] { wait(); });
 }
@@ -22,9 +37,7 @@ InterruptGuard::~InterruptGuard() {
 }
 
 void InterruptGuard::wait() {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int signal : {SIGINT, SIGTERM, SIGUSR2}) sigaddset(&set, signal);
+  const sigset_t set = awaited_signals();
   int signal = 0;
   sigwait(&set, &signal);
   if (signal == SIGUSR2) return;

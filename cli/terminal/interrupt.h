@@ -7,9 +7,9 @@
 
 namespace hwsim::cli {
 
-/// While it lives, SIGINT and SIGTERM remove `folder` (when not empty) and end the process with status 130 or
-/// 143, at once, whatever the other threads are doing. Signals are blocked in the threads started later. Make
-/// it first.
+/// While it lives, SIGINT, SIGTERM and SIGHUP (unless it is ignored, as by nohup) remove `folder` (when not
+/// empty) and end the process with status 130, 143 or 129, at once, whatever the other threads are doing.
+/// Signals are blocked in the threads started later. Make it first.
 class InterruptGuard {
  public:
   explicit InterruptGuard(std::string message = "interrupted: nothing was kept");

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "hwsim/base/printable.h"
+
 namespace hwsim::cli {
 namespace {
 
@@ -33,7 +35,8 @@ Progress::Progress(const CommonOptions& options, const Terminal& terminal)
 
 Progress::~Progress() { finish(); }
 
-void Progress::update(double done_ratio, const std::string& what) {
+void Progress::update(double done_ratio, const std::string& name) {
+  const std::string what = printable_line(name);
   const std::lock_guard lock(mutex_);
   if (silent_) return;
   done_ratio = std::clamp(done_ratio, 0.0, 1.0);

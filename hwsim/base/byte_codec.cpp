@@ -8,7 +8,8 @@ namespace hwsim {
 namespace {
 
 constexpr std::size_t kKindBytes = 8;
-constexpr std::size_t kHeaderBytes = kKindBytes + 2 * 8 + 2 * 8;
+constexpr std::size_t kHeaderBytes = kSealBytes;
+static_assert(kHeaderBytes == kKindBytes + 2 * 8 + 2 * 8);
 
 std::uint64_t kind_word(std::string_view kind) {
   std::uint64_t word = 0;
@@ -27,8 +28,8 @@ std::array<std::uint64_t, 2> check_sum(std::span<const std::uint8_t> start,
 
 }  // namespace
 
-std::vector<std::uint8_t> seal(std::string_view kind, std::uint64_t version,
-                               std::span<const std::uint8_t> payload) {
+std::vector<std::uint8_t> seal_of(std::string_view kind, std::uint64_t version,
+                                  std::span<const std::uint8_t> payload) {
   ByteWriter header;
   header.word(kind_word(kind));
   header.word(version);
@@ -37,8 +38,14 @@ std::vector<std::uint8_t> seal(std::string_view kind, std::uint64_t version,
   ByteWriter file;
   file.raw(start);
   for (const std::uint64_t word : check_sum(start, payload)) file.word(word);
-  file.raw(payload);
   return file.take();
+}
+
+std::vector<std::uint8_t> seal(std::string_view kind, std::uint64_t version,
+                               std::span<const std::uint8_t> payload) {
+  std::vector<std::uint8_t> file = seal_of(kind, version, payload);
+  file.insert(file.end(), payload.begin(), payload.end());
+  return file;
 }
 
 std::span<const std::uint8_t> open_seal(std::string_view kind, std::uint64_t version,

@@ -97,6 +97,11 @@ class ByteReader {
   std::span<const std::uint8_t> bytes_;
 };
 
+/// The header that seals `payload`: kind (up to eight characters), version, length and check sum.
+std::vector<std::uint8_t> seal_of(std::string_view kind, std::uint64_t version,
+                                  std::span<const std::uint8_t> payload);
+inline constexpr std::size_t kSealBytes = 40;
+
 /// `payload` behind a header of kind (up to eight characters), version, length and check sum.
 std::vector<std::uint8_t> seal(std::string_view kind, std::uint64_t version,
                                std::span<const std::uint8_t> payload);

@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "hwsim/base/printable.h"
+
 namespace hwsim {
 namespace {
 
@@ -48,16 +50,24 @@ SourcePlace excerpt(SourcePlace place) {
   return place;
 }
 
+/// As many bytes as before, so that the mark below stays in its place.
+std::string shown_line(std::string line) {
+  if (printable(line) != line)
+    for (char& c : line)
+      if (c != '\t' && (c < 0x20 || c > 0x7e)) c = '?';
+  return line;
+}
+
 void append_excerpt(std::string& out, const Diagnostic& d) {
   const SourcePlace place = excerpt(d.place);
   const std::string number = std::to_string(place.line);
   const std::string margin(number.size(), ' ');
-  out += margin + " |\n" + number + " | " + place.line_text + "\n" + margin + " | ";
+  out += margin + " |\n" + number + " | " + shown_line(place.line_text) + "\n" + margin + " | ";
   const auto column = static_cast<size_t>(std::max(1, place.column));
   for (size_t i = 0; i + 1 < column; ++i)  // a tab stays a tab, so that the mark stands below its column
     out += i < place.line_text.size() && place.line_text[i] == '\t' ? '\t' : ' ';
   out += std::string(static_cast<size_t>(std::max(1, place.length)), '^');
-  if (!d.hint.empty()) out += " " + d.hint;
+  if (!d.hint.empty()) out += " " + printable_line(d.hint);
   out += "\n";
 }
 
@@ -91,18 +101,18 @@ std::string render(const Diagnostic& d, bool color) {
   const std::string reset = color ? "\033[0m" : "";
   std::string out = (color ? severity_color(d.severity) : "") + std::string(severity_name(d.severity));
   if (!d.code.empty()) out += "[" + d.code + "]";
-  out += reset + ": " + d.message + "\n";
+  out += reset + ": " + printable(d.message) + "\n";
   if (!d.place.file.empty()) {
-    out += "  --> " + d.place.file;
+    out += "  --> " + printable_line(d.place.file);
     if (d.place.line > 0)
       out += ":" + std::to_string(d.place.line) + ":" + std::to_string(std::max(1, d.place.column));
     out += "\n";
   }
   const bool excerpt = d.place.line > 0 && !d.place.line_text.empty();
   if (excerpt) append_excerpt(out, d);
-  if (!excerpt && !d.hint.empty()) out += "   = hint: " + d.hint + "\n";
-  for (const std::string& note : d.notes) out += "   = note: " + note + "\n";
-  if (!d.help.empty()) out += "   = help: " + d.help + "\n";
+  if (!excerpt && !d.hint.empty()) out += "   = hint: " + printable(d.hint) + "\n";
+  for (const std::string& note : d.notes) out += "   = note: " + printable(note) + "\n";
+  if (!d.help.empty()) out += "   = help: " + printable(d.help) + "\n";
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "algos/base/reference_frame.h"
+#include "algos/source_digest.h"
 #include "lab/base/files.h"
 #include "pipeline/image/image_io.h"
 
@@ -14,8 +15,8 @@ namespace {
 
 /// Everything that the image depends on.
 std::string reference_key(const SceneView& scene, int samples) {
-  return fmt::format("{}|{}|{}|{}|{}", algos::kReferenceVersion, scene.summary().content_hash, scene.camera(),
-                     key_text(scene.plan(), kReference), samples);
+  return fmt::format("{}|{}|{}|{}|{}", algos::reference_digest(), scene.summary().content_hash,
+                     scene.camera(), key_text(scene.plan(), kReference), samples);
 }
 
 }  // namespace

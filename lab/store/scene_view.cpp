@@ -13,6 +13,7 @@
 #include "hwsim/base/file_name.h"
 #include "lab/base/messages.h"
 #include "lab/request/image_input.h"
+#include "pipeline/generate/generator_digest.h"
 #include "pipeline/open/scene_source.h"
 
 namespace hwsim::lab {
@@ -133,7 +134,8 @@ std::string summary_path(const View& view, const Cache& cache) {
   std::error_code error;
   const std::string name = is_file ? fs::absolute(scene, error).lexically_normal().string() : scene;
   return cache.path(CacheFolder::scenes,
-                    fmt::format("{}|{}|{}|{}", algos::source_digest(), name, scene, view.exposure),
+                    fmt::format("{}|{}|{}|{}|{}", algos::source_digest(), pipeline::generator_digest(), name,
+                                scene, view.exposure),
                     ".summary");
 }
 

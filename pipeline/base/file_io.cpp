@@ -8,9 +8,9 @@
 #include <cstdio>
 #include <cstring>
 #include <string>
-#include <utility>
 
 #include "hwsim/base/diagnostics.h"
+#include "pipeline/base/file_descriptor.h"
 
 namespace hwsim::pipeline {
 namespace {
@@ -25,20 +25,8 @@ namespace {
 
 std::string reason() { return std::strerror(errno); }
 
-class File {
- public:
-  explicit File(int descriptor) : descriptor_(descriptor) {}
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  ~File() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  int get() const { return descriptor_; }
-  bool close() { return ::close(std::exchange(descriptor_, -1)) == 0; }
-
- private:
-  int descriptor_;
-};
+constexpr std::string_view kUnfinished = ".hwsim-tmp-";
+constexpr int kAttempts = 1000;  // far more than writers of one file
 
 bool write_all(int descriptor, std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
@@ -50,10 +38,53 @@ bool write_all(int descriptor, std::span<const std::uint8_t> bytes) {
   return true;
 }
 
+bool write_all(int descriptor, const std::vector<ByteSpan>& pieces) {
+  for (const ByteSpan piece : pieces)
+    if (!write_all(descriptor, piece)) return false;
+  return true;
+}
+
+/// A new file, locked. The first free name is taken, so that the next writer of the same target finds what a
+/// killed one left.
+FileDescriptor open_unfinished(const std::string& target, std::string& path) {
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    path = target + std::string(kUnfinished) + std::to_string(attempt);
+    remove_if_abandoned(path);
+    FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (!file.is_open() && errno != EEXIST) break;
+    struct stat status {};  // between the calls another process may take the file for abandoned
+    if (file.is_open() && file.lock() && ::fstat(file.get(), &status) == 0 && status.st_nlink > 0)
+      return file;
+  }
+  return FileDescriptor();
+}
+
+using Place = int (*)(const char* from, const char* to);
+
+void write_file(const std::string& path, const std::string& code, const std::vector<ByteSpan>& pieces,
+                Place place) {
+  const std::string help = "check that the folder exists, may be written and has space";
+  std::string unfinished;
+  FileDescriptor file = open_unfinished(path, unfinished);
+  if (!file.is_open()) fail(code, "cannot write the file: " + reason(), path, help);
+  const bool written = write_all(file.get(), pieces) && ::fsync(file.get()) == 0 &&
+                       place(unfinished.c_str(), path.c_str()) == 0 && file.close();
+  if (written) return;
+  const std::string why = reason();
+  ::unlink(unfinished.c_str());
+  fail(code, "cannot write the file: " + why, path, help);
+}
+
+int link_and_unlink(const char* from, const char* to) {
+  if (::link(from, to) != 0) return -1;
+  ::unlink(from);
+  return 0;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> read_file(const std::string& path, const std::string& code, std::size_t max_bytes) {
-  const File file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   struct stat status {};
   if (file.get() < 0 || ::fstat(file.get(), &status) != 0)
     fail(code, "cannot read the file: " + reason(), path);
@@ -77,23 +108,33 @@ std::vector<std::uint8_t> read_file(const std::string& path, const std::string& 
   return bytes;
 }
 
+void write_file_atomically(const std::string& path, const std::string& code, ByteSpan bytes) {
+  write_file(path, code, {bytes}, std::rename);
+}
+
 void write_file_atomically(const std::string& path, const std::string& code,
-                           std::span<const std::uint8_t> bytes) {
-  const std::string help = "check that the folder exists, may be written and has space";
-  std::string temporary;
-  int descriptor = -1;
-  for (int attempt = 0; attempt < 1000 && descriptor < 0; ++attempt) {  // O_EXCL: two writers never share one
-    temporary = path + ".tmp." + std::to_string(::getpid()) + "." + std::to_string(attempt);
-    descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor < 0 && errno != EEXIST) break;
-  }
-  if (descriptor < 0) fail(code, "cannot write the file: " + reason(), path, help);
-  File file(descriptor);
-  if (write_all(descriptor, bytes) && file.close() && std::rename(temporary.c_str(), path.c_str()) == 0)
-    return;
-  const std::string why = reason();
-  ::unlink(temporary.c_str());
-  fail(code, "cannot write the file: " + why, path, help);
+                           const std::vector<ByteSpan>& pieces) {
+  write_file(path, code, pieces, std::rename);
+}
+
+void write_new_file(const std::string& path, const std::string& code, ByteSpan bytes) {
+  write_file(path, code, {bytes}, link_and_unlink);
+}
+
+bool is_unfinished_name(std::string_view name) {
+  const std::size_t at = name.rfind(kUnfinished);
+  const std::size_t digits = at + kUnfinished.size();
+  return at != std::string_view::npos && digits < name.size() &&
+         name.find_first_not_of("0123456789", digits) == std::string_view::npos;
+}
+
+bool remove_if_abandoned(const std::string& path) {
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  struct stat opened {
+  }, there{};
+  return file.is_open() && ::fstat(file.get(), &opened) == 0 && S_ISREG(opened.st_mode) &&
+         opened.st_uid == ::geteuid() && file.lock() && ::stat(path.c_str(), &there) == 0 &&
+         there.st_ino == opened.st_ino && ::unlink(path.c_str()) == 0;
 }
 
 }  // namespace hwsim::pipeline

@@ -4,17 +4,31 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hwsim::pipeline {
+
+using ByteSpan = std::span<const std::uint8_t>;
 
 /// The whole file. Throws InputError (code `code`) with the system's reason when it cannot be read or is
 /// larger than `max_bytes`.
 std::vector<std::uint8_t> read_file(const std::string& path, const std::string& code, std::size_t max_bytes);
 
-/// Writes beside the target and renames, so that a file that exists is complete. Throws InputError (code
-/// `code`).
+/// Writes beside the target, waits until the disk has it, and renames, so that a file that exists is complete
+/// even after a loss of power. Throws InputError (code `code`).
+void write_file_atomically(const std::string& path, const std::string& code, ByteSpan bytes);
+/// The same of several pieces, one behind the other.
 void write_file_atomically(const std::string& path, const std::string& code,
-                           std::span<const std::uint8_t> bytes);
+                           const std::vector<ByteSpan>& pieces);
+
+/// The same, but a file that exists stays, and is an error.
+void write_new_file(const std::string& path, const std::string& code, ByteSpan bytes);
+
+/// Whether a file of this name is one that the functions above rename when it is complete. Its writer holds a
+/// lock on it.
+bool is_unfinished_name(std::string_view name);
+/// Removes an unfinished file whose writer is gone. Returns whether it did.
+bool remove_if_abandoned(const std::string& path);
 
 }  // namespace hwsim::pipeline

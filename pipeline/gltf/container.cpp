@@ -80,10 +80,16 @@ Container read_container(Report& report, std::size_t max_file_bytes) {
   if (!std::filesystem::is_regular_file(path, error)) report.fail("S001", "not a file");
   if (std::filesystem::file_size(path, error) > max_file_bytes && !error)
     report.fail("S012", "the file is larger than the limit of " + std::to_string(max_file_bytes) + " bytes");
+  std::vector<std::uint8_t> bytes;
+  if (!read_bytes(path, max_file_bytes, bytes)) report.fail("S001", "the file cannot be read");
+  return check_container(report, std::move(bytes), has_extension(path, ".glb"));
+}
+
+Container check_container(Report& report, std::vector<std::uint8_t> bytes, bool must_be_binary) {
   Container c;
-  if (!read_bytes(path, max_file_bytes, c.bytes)) report.fail("S001", "the file cannot be read");
+  c.bytes = std::move(bytes);
   const bool magic = c.bytes.size() >= 4 && std::memcmp(c.bytes.data(), "glTF", 4) == 0;
-  if (has_extension(path, ".glb") && !magic)
+  if (must_be_binary && !magic)
     report.fail("S002",
                 c.bytes.empty() ? "the file is empty" : "not a GLB: the file does not begin with \"glTF\"",
                 kExportAgain);

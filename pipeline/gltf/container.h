@@ -25,6 +25,9 @@ struct Container {
 /// Reads and checks the container. Throws InputError (S001 unreadable, S002 damaged, S012 too large).
 Container read_container(Report& report, std::size_t max_file_bytes);
 
+/// The same of bytes that are in memory.
+Container check_container(Report& report, std::vector<std::uint8_t> bytes, bool must_be_binary);
+
 /// False if the file cannot be read or is larger than max_bytes.
 bool read_bytes(const std::string& path, std::size_t max_bytes, std::vector<std::uint8_t>& out);
 

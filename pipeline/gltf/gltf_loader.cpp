@@ -190,17 +190,12 @@ void add_view_and_light(Scene& scene, Report& report, const gltf::Source& source
   }
 }
 
-}  // namespace
-
-Scene load_gltf(const std::string& path, const SceneLoadOptions& options) {
-  return gltf::load_scene(path, options, nullptr);
-}
-
-Scene gltf::load_scene(const std::string& path, const SceneLoadOptions& options,
-                       std::vector<std::string>* light_names) {
-  Report report(path);
+/// `container` is asked for once, and given back when its bytes have been read.
+template <class ReadContainer>
+Scene load(Report& report, ReadContainer&& container, const SceneLoadOptions& options,
+           std::vector<std::string>* light_names) {
   gltf::Budget budget(report, options.max_memory_bytes);
-  gltf::Source source = gltf::read_source(report, options, budget);
+  gltf::Source source = gltf::read_source(report, container(), options, budget);
   const tinygltf::Model& model = source.model;
   gltf::note_extensions(report, source);
   std::vector<PlacedNode> nodes = gltf::walk_scene(report, model);
@@ -209,7 +204,7 @@ Scene gltf::load_scene(const std::string& path, const SceneLoadOptions& options,
   gltf::charge_meshes(report, budget, model, used_meshes);
 
   Scene scene;
-  scene.name = std::filesystem::path(path).stem().string();
+  scene.name = std::filesystem::path(report.file()).stem().string();
   gltf::MaterialSet set = gltf::build_materials(report, source, materials_in_use(model, used_meshes));
   scene.samplers = std::move(set.samplers);
   gltf::charge_textures(report, budget, source, set.textures);
@@ -228,6 +223,25 @@ Scene gltf::load_scene(const std::string& path, const SceneLoadOptions& options,
   scene.files = source.files;
   scene.notes = report.notes();
   return scene;
+}
+
+}  // namespace
+
+Scene load_gltf(const std::string& path, const SceneLoadOptions& options) {
+  return gltf::load_scene(path, options, nullptr);
+}
+
+Scene load_glb(std::vector<std::uint8_t> bytes, const std::string& name, const SceneLoadOptions& options) {
+  Report report(name);
+  return load(
+      report, [&] { return gltf::check_container(report, std::move(bytes), true); }, options, nullptr);
+}
+
+Scene gltf::load_scene(const std::string& path, const SceneLoadOptions& options,
+                       std::vector<std::string>* light_names) {
+  Report report(path);
+  return load(
+      report, [&] { return gltf::read_container(report, options.max_file_bytes); }, options, light_names);
 }
 
 }  // namespace hwsim::pipeline

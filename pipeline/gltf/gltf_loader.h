@@ -1,6 +1,8 @@
 #pragma once
 // Loads a glTF file as a scene.
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "pipeline/scene/scene.h"
 
@@ -21,5 +23,9 @@ struct SceneLoadOptions {
 /// ("meshes[3].primitives[0] attribute POSITION") and the remedy; never returns a scene with an index out of
 /// range or a value that is not finite.
 Scene load_gltf(const std::string& path, const SceneLoadOptions& options = {});
+
+/// The same of a GLB file's bytes; `name` stands for the file in messages.
+Scene load_glb(std::vector<std::uint8_t> bytes, const std::string& name,
+               const SceneLoadOptions& options = {});
 
 }  // namespace hwsim::pipeline

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "pipeline/gltf/container.h"
 #include "pipeline/gltf/rules.h"
 
 namespace hwsim::pipeline::gltf {
@@ -65,8 +64,8 @@ tinygltf::Model parse(const Report& report, json&& root) {
 
 }  // namespace
 
-Source read_source(Report& report, const SceneLoadOptions& options, Budget& budget) {
-  const Container container = read_container(report, options.max_file_bytes);
+Source read_source(Report& report, const Container& container, const SceneLoadOptions& options,
+                   Budget& budget) {
   budget.charge(container.bytes.size(), "the file");
   json root = parse_json(report, container.json());
   check_rules(report, root);

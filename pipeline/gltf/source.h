@@ -6,6 +6,7 @@
 
 #include "pipeline/gltf/budget.h"
 #include "pipeline/gltf/cameras.h"
+#include "pipeline/gltf/container.h"
 #include "pipeline/gltf/gltf_loader.h"
 #include "pipeline/gltf/images.h"
 #include "pipeline/gltf/report.h"
@@ -29,6 +30,7 @@ struct Source {
 
 /// Everything that is checked without looking at vertices is right in the result: types, references, byte
 /// ranges. Throws InputError.
-Source read_source(Report& report, const SceneLoadOptions& options, Budget& budget);
+Source read_source(Report& report, const Container& container, const SceneLoadOptions& options,
+                   Budget& budget);
 
 }  // namespace hwsim::pipeline::gltf

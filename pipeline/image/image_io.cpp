@@ -8,6 +8,7 @@
 
 #include "hwsim/base/diagnostics.h"
 #include "pipeline/base/file_io.h"
+#include "pipeline/image/image_bytes.h"
 #include "pipeline/image/image_signature.h"
 #include "pipeline/image/module_loader.h"
 
@@ -108,16 +109,6 @@ std::vector<std::uint8_t> encode_png(const Image& image, const std::string& path
   return encode("png", rgb.data(), image, path);
 }
 
-// Finite values beyond the half format saturate: a bright pixel must not turn into an infinite one.
-std::vector<std::uint8_t> encode_exr(const Image& image, const std::string& path) {
-  std::vector<float> rgb;
-  rgb.reserve(image.pixels.size() * 3);
-  for (const glm::vec4& pixel : image.pixels)
-    for (int c = 0; c < 3; ++c)
-      rgb.push_back(std::isfinite(pixel[c]) ? std::clamp(pixel[c], -kLargestHalf, kLargestHalf) : pixel[c]);
-  return encode("exr", rgb.data(), image, path);
-}
-
 }  // namespace
 
 RawImage decode_image(std::span<const std::uint8_t> bytes, const std::string& what) {
@@ -125,14 +116,25 @@ RawImage decode_image(std::span<const std::uint8_t> bytes, const std::string& wh
   return decode<RawTarget>(bytes, what, false).image;
 }
 
-Image read_image(const std::string& path) {
-  const std::vector<std::uint8_t> bytes = read_file(path, "I004", kMaxFileBytes);
-  check_format(bytes, path, true);
-  Image image = decode<FloatTarget>(bytes, path, true).image;
+Image read_image(const std::string& path) { return read_image(read_file(path, "I004", kMaxFileBytes), path); }
+
+Image read_image(std::span<const std::uint8_t> bytes, const std::string& what) {
+  check_format(bytes, what, true);
+  Image image = decode<FloatTarget>(bytes, what, true).image;
   if (image_format(bytes) == ImageFormat::exr) return image;
   for (glm::vec4& pixel : image.pixels)
     for (int c = 0; c < 3; ++c) pixel[c] = linear_from_srgb(pixel[c]);
   return image;
+}
+
+// Finite values beyond the half format saturate: a bright pixel must not turn into an infinite one.
+std::vector<std::uint8_t> encode_exr(const Image& image, const std::string& what) {
+  std::vector<float> rgb;
+  rgb.reserve(image.pixels.size() * 3);
+  for (const glm::vec4& pixel : image.pixels)
+    for (int c = 0; c < 3; ++c)
+      rgb.push_back(std::isfinite(pixel[c]) ? std::clamp(pixel[c], -kLargestHalf, kLargestHalf) : pixel[c]);
+  return encode("exr", rgb.data(), image, what);
 }
 
 void write_image(const Image& image, const std::string& path) {

@@ -10,16 +10,14 @@
 
 #include "hwsim/base/content_hash.h"
 #include "hwsim/base/file_name.h"
-#include "pipeline/base/file_io.h"
+#include "pipeline/base/sealed_file.h"
+#include "pipeline/generate/generator_digest.h"
 #include "pipeline/generate/registry.h"
 #include "pipeline/gltf/gltf_loader.h"
 
 namespace hwsim::pipeline {
 namespace {
 using Values = std::map<std::string, double>;
-
-// Raised when a generator's output changes, so that no older cached file is taken for it.
-constexpr int kGeneratorVersion = 3;
 
 [[noreturn]] void fail(const std::string& code, const std::string& message, const std::string& hint = "",
                        const std::string& help = "") {
@@ -102,43 +100,67 @@ std::pair<std::string, Values> parse_spec(const std::string& spec) {
 }
 
 std::string cache_file_name(const std::string& name, const Values& values) {
-  std::string key = name + " version " + std::to_string(kGeneratorVersion);
+  std::string key = name + " by " + std::string(generator_digest());
   for (const auto& [parameter, value] : values) key += ' ' + parameter + '=' + shown(value);
   ContentHash hash;
   hash.add({reinterpret_cast<const std::uint8_t*>(key.data()), key.size()});
   return name + "-" + hash.hex().substr(0, 16) + ".glb";
 }
 
-void write_complete(const generate::Generator& generator, const Values& values, const std::string& path) {
-  const auto bytes = generate::encode_glb(generator.make(generate::Parameters(values)));
+std::vector<std::uint8_t> make_glb(const generate::Generator& generator, const Values& values) {
+  std::vector<std::uint8_t> bytes = generate::encode_glb(generator.make(generate::Parameters(values)));
   if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
     fail("S205", generator.info.name + " with these parameters is larger than a GLB file may be (4 GiB)");
-  write_file_atomically(path, "S206", bytes);
+  return bytes;
 }
 
 bool is_file_name(const std::string& name) {
   return has_extension(name, ".gltf") || has_extension(name, ".glb");
 }
 
+/// From the cache, or made now and kept there.
+std::vector<std::uint8_t> generated_glb(const generate::Generator& generator, const Values& values,
+                                        const std::string& folder, const NoteFunction& note) {
+  if (folder.empty()) return make_glb(generator, values);
+  if (const std::string fault = make_private_folder(folder); !fault.empty()) {
+    note(unwritable_note(folder, fault));
+    return make_glb(generator, values);
+  }
+  const std::string path =
+      (std::filesystem::path(folder) / cache_file_name(generator.info.name, values)).string();
+  const SealKind kind{"glb", generator_digest()};
+  SealedContent kept = read_sealed(path, kind);
+  if (kept.bytes) return std::move(*kept.bytes);
+  if (!kept.damage.empty()) note(damage_note(path, kept.damage));
+  std::vector<std::uint8_t> bytes = make_glb(generator, values);
+  try {
+    write_sealed(path, kind, "K002", bytes);
+  } catch (const InputError& error) {
+    note(unwritable_note(folder, error.what()));
+  }
+  return bytes;
+}
+
 Scene open_generated(const std::string& spec, const std::string& cache_directory,
-                     const SceneLoadOptions& options) {
+                     const SceneLoadOptions& options, const NoteFunction& note) {
   const auto [name, given] = parse_spec(spec);
   const generate::Generator& generator = find_generator(name);
   const Values values = complete_parameters(generator.info, given);
-  std::error_code error;
-  std::filesystem::create_directories(cache_directory, error);
-  if (error)
-    fail("S206", "the folder `" + cache_directory + "` cannot be created: " + error.message(), "",
-         "set HWSIM_CACHE to a folder that can be written");
-  const std::string path = (std::filesystem::path(cache_directory) / cache_file_name(name, values)).string();
-  if (std::filesystem::exists(path, error)) {
-    try {
-      return load_gltf(path, options);
-    } catch (const InputError&) {  // a damaged cache file is no mistake of the user's: written anew
-    }
-  }
-  write_complete(generator, values, path);
-  return load_gltf(path, options);
+  const NoteFunction silent = [](const Diagnostic&) {};
+  Scene scene =
+      load_glb(generated_glb(generator, values, cache_directory, note ? note : silent), spec, options);
+  scene.name = spec;
+  scene.files.clear();  // it came from no file
+  return scene;
+}
+
+Diagnostic note_on(const std::string& file, const std::string& code, const std::string& message,
+                   const std::string& help, std::string consequence) {
+  Diagnostic note{.severity = Severity::note, .code = code, .message = message};
+  note.place.file = file;
+  note.help = help;
+  note.notes = {std::move(consequence)};
+  return note;
 }
 
 }  // namespace
@@ -155,15 +177,24 @@ std::span<const GeneratorInfo> generators() {
 void write_generated_scene(const std::string& name, const std::map<std::string, double>& parameters,
                            const std::string& path) {
   const generate::Generator& generator = find_generator(name);
-  write_complete(generator, complete_parameters(generator.info, parameters), path);
+  write_file_atomically(path, "S206", make_glb(generator, complete_parameters(generator.info, parameters)));
 }
 
 Scene open_scene(const std::string& name_or_path, const std::string& cache_directory,
-                 const SceneLoadOptions& options) {
-  if (is_file_name(name_or_path)) return load_gltf(name_or_path, options);
-  Scene scene = open_generated(name_or_path, cache_directory, options);
-  scene.name = name_or_path;
-  return scene;
+                 const SceneLoadOptions& options, const NoteFunction& note) {
+  return is_file_name(name_or_path) ? load_gltf(name_or_path, options)
+                                    : open_generated(name_or_path, cache_directory, options, note);
+}
+
+Diagnostic damage_note(const std::string& path, const std::string& reason) {
+  return note_on(path, "K001", "a file of the cache is damaged (" + reason + ") and is made anew",
+                 "nothing needs to be done", "results are not affected");
+}
+
+Diagnostic unwritable_note(const std::string& folder, const std::string& reason) {
+  return note_on(folder, "K002", "the cache cannot be used: " + reason,
+                 "set HWSIM_CACHE to a folder of your own that has space",
+                 "results are not affected; the next run will do this work again");
 }
 
 }  // namespace hwsim::pipeline

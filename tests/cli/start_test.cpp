@@ -55,7 +55,7 @@ TEST_F(StartTest, ReplayReadsTheWorkAndNotTheScene) {
   const std::string command =
       "run sponza_hall --resolution 320x180 -t msaa8x --no-image --force --out result";
   const Witnessed first = seen(command);
-  EXPECT_GT(Witnessed::count(first.read, ".glb"), 0u) << "the witness does not see the scene";
+  EXPECT_GT(Witnessed::count(first.written, ".glb"), 0u) << "the witness does not see the scene";
   EXPECT_GT(first.loaded.size(), first.linked.size()) << "the witness does not see its textures' library";
   seen(command);  // the first run wrote the scene's file, and a file just written is not trusted yet
   const Witnessed replay = seen(command);
