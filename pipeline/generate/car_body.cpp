@@ -106,6 +106,27 @@ void add_trim(Model& car, int detail) {
   add_box(dark, {-2.0, 0.17, -0.7}, {2.0, 0.26, 0.7});
 }
 
+/// Mouldings along windows, flank and roof: a pixel of the distant view is 7 mm, a moulding 6 mm, and its
+/// highlight a seventh of that, so that samples of a pixel hit or miss it. These are the bead chains of SSS,
+/// figure 1.
+void add_mouldings(Model& car, int detail) {
+  constexpr double kRadius = 0.003;
+  struct Line {
+    int look;
+    double s0, s1, c;
+  };
+  for (const Line& line :
+       {Line{kChrome, 5.6, 12.4, 6.0}, Line{kPaint, 2.4, 16.0, 5.2}, Line{kPaint, 7.0, 12.4, 6.95}})
+    for (const double side : {-1.0, 1.0}) {
+      std::vector<dvec3> path;
+      const int pieces = 24 * detail;
+      for (int i = 0; i <= pieces; ++i)
+        path.push_back(body_point(line.s0 + (line.s1 - line.s0) * i / pieces, line.c) * dvec3(1, 1, side));
+      add_tube(car.pieces[static_cast<std::size_t>(line.look)].surface, path, kRadius, std::max(8, detail),
+               true);
+    }
+}
+
 Blueprint make(const Parameters& p) {
   Pcg random(p.seed());
   const double triangles = p.number("triangles");
@@ -127,6 +148,7 @@ Blueprint make(const Parameters& p) {
   const int detail = std::clamp(static_cast<int>(std::sqrt(triangles) / 70.0), 3, 40);
   add_wheel(wheel, detail);
   add_trim(car, detail);
+  if (p.number("mouldings") > 0.0) add_mouldings(car, detail);
   double used = 4.0 * static_cast<double>(wheel.pieces[0].surface.indices.size() +
                                           wheel.pieces[1].surface.indices.size());
   for (const Piece& piece : car.pieces) used += static_cast<double>(piece.surface.indices.size());
@@ -151,7 +173,7 @@ Blueprint make(const Parameters& p) {
   out.eye = {4.6, 1.7, 4.4};
   out.target = {0.15, 0.6, 0.0};
   out.fov_y_rad = 0.52;
-  out.more_views = {{"close_up", {2.1, 1.3, 1.8}, {0.8, 0.74, 0.3}, 0.47},
+  out.more_views = {{"close_up", {2.93, 0.31, 0.75}, {0.3, 0.85, -0.51}, 0.62},
                     {"distant", {7.12, 2.56, 6.8}, {0.0, 0.6, 0.0}, 0.52}};
   out.sun_direction = {0.7, -1.0, -0.35};
   return out;
@@ -164,6 +186,8 @@ Generator car_body() {
            "car of smooth curved panels with thin highlights; cameras suggested, close_up and distant",
            {{"triangles", 500000, 20000, 20000000, "triangles drawn, within 2 %"},
             {"roughness", 0.3, 0.05, 1, "roughness of paint and chrome; 0.3 is a Phong exponent of 245"},
+            {"mouldings", 0, 0, 1,
+             "1: mouldings of 6 mm along windows, flank and roof, whose highlights break into beads"},
             seed_parameter()}},
           make};
 }
