@@ -2,9 +2,10 @@
 // moves by parts of a pixel: Markdown tables on standard output.
 //
 //   quality_study [--samples=256] [--size=480x270] [--frames=8] [--jobs=2] [--only=errors|stability|kept]
-//                 [--technique=T ...] [scene ...]
-// `kept` gives filters the truth itself, which has no edges left to smooth, or an image file: what they
-// change of it they lose.
+//                 [--lights=scene|simple|complex] [--technique=T ...] [scene ...]
+// --lights=complex is the papers' rig: a light with a shadow map, and 16 point lights that reach the whole
+// scene. `kept` gives filters the truth itself, which has no edges left to smooth, or an image file: what
+// they change of it they lose.
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -75,6 +76,7 @@ struct Study {
   int width_px = 480, height_px = 270;
   int samples = 256, frames = 8, jobs = 2;
   bool errors = true, stability = true, kept = true;
+  std::string lights = "scene";  ///< others reach the whole scene, and come with shadows, as in the papers
   std::vector<std::string> scenes, techniques;
 };
 
@@ -265,6 +267,10 @@ bool parse(std::string_view argument, Study& study) {
   if (const auto text = value("--frames="); !text.empty()) return (study.frames = number(text)) > 1;
   if (const auto text = value("--jobs="); !text.empty()) return (study.jobs = number(text)) > 0;
   if (const auto text = value("--only="); !text.empty()) return parse_part(text, study);
+  if (const auto text = value("--lights="); !text.empty()) {
+    study.lights = text;
+    return text == "scene" || text == "simple" || text == "complex";
+  }
   if (const auto text = value("--technique="); !text.empty()) {
     study.techniques.emplace_back(text);
     return true;
@@ -286,9 +292,12 @@ void run(const std::string& name, const Study& study) {
     kept(shown, pipeline::srgb_codes(pipeline::read_image(name)), study);
     return;
   }
+  const bool of_papers = study.lights != "scene";
   FrameRequest request = open_study({.scene = name,
                                      .resolution = {study.width_px, study.height_px},
-                                     .shadows = false,          // a shadow map's own error hides the edges'
+                                     .light_range = of_papers ? 1.0 : 0.15,
+                                     .lights = study.lights,
+                                     .shadows = of_papers,
                                      .metal_ambient = false});  // as the papers' shaders have it
   request.features = every_feature(8);
   if (study.errors || study.kept) {
@@ -318,8 +327,8 @@ int main(int argc, char** argv) {
     for (const pipeline::GeneratorInfo& generator : pipeline::generators())
       study.scenes.push_back(generator.name);
   std::printf(
-      "# Quality\n\n%dx%d, no shadow map, against %d samples a pixel traced by rays; sRGB values in [0,1].\n",
-      study.width_px, study.height_px, study.samples);
+      "# Quality\n\n%dx%d, lights=%s, against %d samples a pixel traced by rays; sRGB values in [0,1].\n",
+      study.width_px, study.height_px, study.lights.c_str(), study.samples);
   try {
     for (const std::string& name : study.scenes) run(name, study);
   } catch (const InputError& error) {

@@ -77,14 +77,18 @@ void add_point_lights(const FrameRequest& request, int count, LightingUniforms& 
   const SceneStats s = stats(*request.scene);
   const glm::vec3 extent = s.bounds_max - s.bounds_min;
   const float range = static_cast<float>(request.light_range) * glm::length(extent);
+  // Strength such that a light gives about 1/2 at a third of its range. Where more than two lights reach a
+  // point, they share what two give: sixteen of full reach would leave most of the frame white.
+  const float scene_m3 = extent.x * extent.y * extent.z, light_m3 = 4.18879f * range * range * range;
+  const float lights_at_a_point =
+      static_cast<float>(count) * (light_m3 < scene_m3 ? light_m3 / scene_m3 : 1.0f);
+  const float strength = 0.5f * range * range / 9.0f / std::max(1.0f, lights_at_a_point / 2.0f);
   Pcg random;
   if (lighting.point_count == 0) lighting.points.clear();
   for (int i = 0; i < count; ++i) {
     PointLight light;
     for (int axis = 0; axis < 3; ++axis)
       light.position[axis] = s.bounds_min[axis] + extent[axis] * random.next();
-    // Strength such that a light gives about 1/2 at a third of its range.
-    const float strength = 0.5f * range * range / 9.0f;
     for (int axis = 0; axis < 3; ++axis) light.color[axis] = strength * (0.3f + 0.7f * random.next());
     light.inv_range2 = 1.0f / (range * range);
     lighting.points.push_back(light);
