@@ -144,11 +144,18 @@ void add_points(CLI::App& app, RunOptions& run) {
   app.add_flag("--no-cache", run.no_cache, "Emulate anew, and keep no traces");
 }
 
+void add_reference_shadows(CLI::App& app, ViewOptions& view) {
+  app.add_option("--reference-shadows", view.reference_shadows,
+                 "The reference's shadows: map (the frame's own, default) or rays")
+      ->type_name("map|rays");
+}
+
 void add_reference_samples(CLI::App& app, RunOptions& run) {
   app.add_option("--reference", run.reference_samples,
                  "Compare with the ray-traced reference of so many samples a pixel; default 64")
       ->check(CLI::Range(1, 65536))
       ->type_name("[SAMPLES]");
+  add_reference_shadows(app, run.view);
   app.add_flag("--no-image", run.no_image, "Write no images");
 }
 

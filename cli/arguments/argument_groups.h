@@ -20,6 +20,7 @@ void add_view_flags(CLI::App& app, ViewOptions& view);
 void add_view(CLI::App& app, ViewOptions& view, bool required);
 /// Which techniques on which GPUs.
 void add_points(CLI::App& app, RunOptions& run);
+void add_reference_shadows(CLI::App& app, ViewOptions& view);
 void add_reference_samples(CLI::App& app, RunOptions& run);
 void add_vary(CLI::App& app, std::vector<std::string>& vary, bool& zip);
 

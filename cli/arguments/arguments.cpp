@@ -154,6 +154,7 @@ void Parser::add_reference() {
   sub.add_option("--samples", reference.samples, "Samples a pixel; default 64")
       ->check(CLI::Range(1, 65536))
       ->type_name("N");
+  add_reference_shadows(sub, reference.view);
   add_out(sub, reference.out);
   add_common(sub, reference.common);
 }

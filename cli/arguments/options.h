@@ -37,6 +37,7 @@ struct ViewOptions {
   std::optional<std::string> camera;  ///< a name or an index
   std::optional<int> point_lights;
   std::optional<double> exposure;
+  std::optional<std::string> reference_shadows;
   bool no_shadows = false;
   std::vector<std::string> sets;  ///< "path=value"
 };

@@ -23,6 +23,7 @@ void apply_flags(const ViewOptions& options, View& view) {
   view.point_lights = options.point_lights.value_or(view.point_lights);
   view.shadows = view.shadows && !options.no_shadows;
   view.exposure = options.exposure.value_or(view.exposure);
+  view.reference_shadows = options.reference_shadows.value_or(view.reference_shadows);
 }
 
 void apply_flags(const RunOptions& options, Request& request) {

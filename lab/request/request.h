@@ -37,6 +37,7 @@ struct View {
   bool shadows = true;
   int shadow_map_px = 2048;
   bool metal_ambient = true;
+  std::string reference_shadows = "map";
   double exposure = 0.0;  ///< factor on the file's lights; 0: automatic (pipeline::SceneLoadOptions)
   int memory_mib = 2048;  ///< that loading the scene may take
   bool operator==(const View&) const = default;
@@ -89,7 +90,7 @@ struct Field {
 template <class Visitor>
 void describe(Visitor& v, View& view) {
   auto& [scene, resolution, camera, point_lights, light_range, lights, shadows, shadow_map_px, metal_ambient,
-         exposure, memory_mib] = view;
+         reference_shadows, exposure, memory_mib] = view;
   auto& [width_px, height_px] = resolution;
   // The scene's content and the camera's index stand in the keys of caches, not what the user called them.
   v.field(
@@ -126,7 +127,7 @@ void describe(Visitor& v, View& view) {
   v.field({{"shadow_map_px", 16, kMaxSidePx, kNoFlags, "side of the shadow map"},
            "scene",
            "shadow_map_px",
-           kWork},
+           kWork | kReference},
           shadow_map_px);
   v.field({{"metal_ambient", 0, 1, kNoFlags,
             "metals reflect ambient light; the papers' shaders had no such term"},
@@ -134,6 +135,14 @@ void describe(Visitor& v, View& view) {
            "metal_ambient",
            kWork | kReference},
           metal_ambient);
+  v.field(
+      {{"reference_shadows", 0, 0, kNoFlags,
+        "the reference's shadows: map, the frame's own shadow map, or rays, which show what the map costs"},
+       "scene",
+       "reference_shadows",
+       kReference,
+       "map|rays"},
+      reference_shadows);
   // Part of the scene's content, as the loader sees it.
   v.field({{"exposure", 0, 1e12, kNoFlags,
             "factor of the file's lights; 0: 1, or less where they are in photometric units"},

@@ -35,6 +35,8 @@ ReferenceImage make_reference(SceneView& scene, int samples, int jobs, const Cac
     algos::ReferenceFrameOptions options;
     options.samples = samples;
     options.jobs = jobs;
+    options.shadows = scene.plan().reference_shadows == "rays" ? algos::ReferenceShadows::rays
+                                                               : algos::ReferenceShadows::map;
     options.progress = [&progress](double share) { progress(share, "reference"); };
     std::filesystem::create_directories(folder, error);
     pipeline::write_image(algos::render_reference_frame(request, options), path);

@@ -139,7 +139,7 @@ struct Pass {
   std::vector<Format>
       target_views;  ///< as which shaders store to `targets`; missing or none: the image's format
   float full_screen_depth = 0.0f;  ///< where the triangle lies that covers the screen
-  bool keep = false;               ///< never culled: a simulated workload without output
+  bool keep = false;               ///< never culled, though the output does not need it
 
   Format view_of(const FrameGraph& graph, std::size_t slot) const;
   Format target_view_of(const FrameGraph& graph, std::size_t slot) const;
@@ -162,6 +162,11 @@ class FrameGraph {
   void set_output(ImageId image, Format view = Format::none) {
     output_ = image;
     output_view_ = view;
+  }
+
+  /// None of the passes added so far is culled: something else than the output is looked at.
+  void keep_passes() {
+    for (Pass& pass : passes_) pass.keep = true;
   }
 
   const Scene& scene() const { return *scene_; }

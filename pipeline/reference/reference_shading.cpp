@@ -18,6 +18,13 @@ using namespace HWY_NAMESPACE;  // the scalar lane of the static target
 
 using ScalarSampler = TextureSampler<ScalarF, ScalarI, ScalarM>;
 
+// The light that casts shadows, and what stands in its way: rays, or the map of the frame that is compared.
+struct ShadowCaster {
+  const ReferenceScene* occluders = nullptr;
+  glm::vec3 to_light{0.0f};
+  const Image* map = nullptr;
+};
+
 // What the shading templates call, for one point on a surface.
 class ScalarShading {
  public:
@@ -25,9 +32,8 @@ class ScalarShading {
   using I = ScalarI;
   using M = ScalarM;
 
-  ScalarShading(const SurfaceHit& hit, const MaterialView& material, const ReferenceScene& occluders,
-                glm::vec3 to_shadowed_light)
-      : hit_(hit), material_(material), occluders_(occluders), to_shadowed_light_(to_shadowed_light) {
+  ScalarShading(const SurfaceHit& hit, const MaterialView& material, const ShadowCaster& caster)
+      : hit_(hit), material_(material), caster_(caster) {
     // SurfaceHit turns the normal of a back face around, and so does facing(): once is enough.
     const glm::vec3 normal = hit.front_face ? hit.normal : -hit.normal;
     put(SurfaceVaryings::kNormal, normal);
@@ -70,10 +76,18 @@ class ScalarShading {
   }
   std::size_t loop_count(int count) const { return static_cast<std::size_t>(count); }
 
+  bool has_shadow_map() const { return caster_.map != nullptr; }
+  // The shadow map is the only image. Coordinates are clamped to it, as in a frame.
+  Vec4<F> load_image(int, I x, I y, I) const {
+    const Image& map = *caster_.map;
+    const glm::vec4& texel = map.at(std::clamp(x.v, 0, map.width - 1), std::clamp(y.v, 0, map.height - 1));
+    return {texel.x, texel.y, texel.z, texel.w};
+  }
+
   // A light below the surface adds nothing: no ray is shot for it.
   F ray_visibility(glm::vec3 position, glm::vec3 normal) const {
-    if (glm::dot(normal, to_shadowed_light_) <= 0.0f) return 0.0f;
-    return occluders_.sees_sky(position, to_shadowed_light_) ? 1.0f : 0.0f;
+    if (glm::dot(normal, caster_.to_light) <= 0.0f) return 0.0f;
+    return caster_.occluders->sees_sky(position, caster_.to_light) ? 1.0f : 0.0f;
   }
 
  private:
@@ -83,15 +97,16 @@ class ScalarShading {
 
   const SurfaceHit& hit_;
   const MaterialView& material_;
-  const ReferenceScene& occluders_;
-  glm::vec3 to_shadowed_light_;
+  const ShadowCaster& caster_;
   std::array<float, SurfaceVaryings::kFull> varyings_{};
 };
 
-// light_surface finds this one by its argument (not const: as exact as the template) instead of the shadow
-// map.
-ScalarF shadow_visibility(ScalarShading& s, const LightingUniforms&, const Vec3<ScalarF>& position,
+// light_surface finds this one by its argument (not const: as exact as the template), which is the frame's
+// own where there is a map.
+ScalarF shadow_visibility(ScalarShading& s, const LightingUniforms& lighting, const Vec3<ScalarF>& position,
                           const Vec3<ScalarF>& normal) {
+  if (s.has_shadow_map())
+    return HWY_NAMESPACE::shadow_visibility<ScalarShading, ScalarF>(s, lighting, position, normal);
   return s.ray_visibility({position.x.v, position.y.v, position.z.v}, {normal.x.v, normal.y.v, normal.z.v});
 }
 
@@ -116,6 +131,7 @@ AlphaLookup texture_alpha(std::shared_ptr<const SceneMaterials> materials) {
 struct SceneShading {
   std::shared_ptr<const SceneMaterials> materials;
   LightingUniforms lighting;
+  std::shared_ptr<const Image> shadow_map;
   glm::vec3 to_shadowed_light{0.0f};
   bool full_varyings;
 
@@ -124,6 +140,7 @@ struct SceneShading {
         lighting(options.lighting
                      ? *options.lighting
                      : make_lighting(scene, scene.cameras.at(static_cast<std::size_t>(options.camera)))),
+        shadow_map(options.shadow_map),
         full_varyings(needs_full_varyings(scene)) {
     const auto caster = std::find_if(lighting.directional.begin(), lighting.directional.end(),
                                      [](const DirectionalLight& light) { return light.shadowed; });
@@ -133,7 +150,8 @@ struct SceneShading {
   }
 
   glm::vec4 shade(const SurfaceHit& hit, const ReferenceScene& occluders) const {
-    ScalarShading s(hit, materials->views.view(hit.material), occluders, to_shadowed_light);
+    const ShadowCaster caster{&occluders, to_shadowed_light, shadow_map.get()};
+    ScalarShading s(hit, materials->views.view(hit.material), caster);
     const MaterialSample<ScalarF> sample = sample_material(s, full_varyings);
     const Surface<ScalarF> surface = make_surface(sample, s.attr3(SurfaceVaryings::kPosition), lighting.eye);
     const Vec3<ScalarF> color =

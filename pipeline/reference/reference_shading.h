@@ -3,6 +3,7 @@
 // scalar lane: what differs from an emulated frame is sampling, filtering of shadows and storage formats,
 // never the material.
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -25,10 +26,11 @@ struct GroundTruthOptions {
   /// footprints together fill the pixel.
   float footprint_scale = 0.0f;
   int jobs = 1;
-  bool shadows = true;  ///< rays to the shadow-casting directional light; no other light casts any
-  /// Those of the frame that is compared (algos::frame_lighting); its shadow map is not used. None:
-  /// make_lighting.
+  bool shadows = true;  ///< of the shadow-casting directional light; no other light casts any
+  /// Those of the frame that is compared. None: make_lighting.
   std::optional<LightingUniforms> lighting{};
+  /// The frame's shadow map, depths in r, looked up by the frame's own shader as `lighting` says. Null: rays.
+  std::shared_ptr<const Image> shadow_map{};
   std::function<void(double done_ratio)> progress{};  ///< (0, 1], one thread at a time
 };
 

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "algos/techniques.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/image/metrics.h"
@@ -35,7 +37,20 @@ TEST(ReferenceFrame, SupersamplingApproachesIt) {
   const double ssaa64 = psnr_db("ssaa64x", request, reference);
   EXPECT_GT(ssaa4, none + 1.0);
   EXPECT_GT(ssaa64, ssaa4 + 1.0);
-  EXPECT_GT(ssaa64, 32.0);  // the rest: shadow-map texels against shadow rays
+  EXPECT_GT(ssaa64, 38.0);  // textures and the 8 bits of the frame are left
+}
+
+TEST(ReferenceFrame, LooksUpTheFramesShadowMapUnlessRaysAreAskedFor) {
+  const FrameRequest request = hall_request();
+  const pipeline::Image by_map = render_reference_frame(request, {.samples = 64});
+  const pipeline::Image by_rays =
+      render_reference_frame(request, {.samples = 64, .shadows = ReferenceShadows::rays});
+  // The map's texels are a larger error than what 64 samples leave.
+  EXPECT_GT(psnr_db("ssaa64x", request, by_map), psnr_db("ssaa64x", request, by_rays) + 4.0);
+  FrameRequest finer = request;
+  finer.shadow_map_px = 4096;
+  EXPECT_GT(pipeline::compare(render_reference_frame(finer, {.samples = 64}), by_rays).psnr_db,
+            pipeline::compare(by_map, by_rays).psnr_db + 3.0);
 }
 
 TEST(ReferenceFrame, ShadowsAndPointLightsAreThoseOfTheRequest) {
@@ -47,6 +62,23 @@ TEST(ReferenceFrame, ShadowsAndPointLightsAreThoseOfTheRequest) {
   EXPECT_GT(alike, 40.0);  // without a shadow map only textures and edges differ
   request.point_lights = 0;
   EXPECT_LT(psnr_db("ssaa64x", request, reference), alike - 5.0);
+}
+
+TEST(FrameLights, SixteenOfFullReachLeaveLittleOfTheFrameWhite) {
+  FrameRequest request;
+  request.scene = std::make_shared<const pipeline::Scene>(
+      pipeline::open_scene("bamboo", hwsim::test::binary_dir() + "/test-cache/scenes"));
+  request.width_px = 160;
+  request.height_px = 90;
+  request.lights = LightProfile::complex;
+  request.light_range = 1.0;
+  const pipeline::Image frame = pipeline::emulate(build_frame(parse_technique("none"), request),
+                                                  request.features, request.functional, {})
+                                    .color;
+  const auto white = std::count_if(frame.pixels.begin(), frame.pixels.end(), [](const glm::vec4& p) {
+    return p.x >= 1.0f || p.y >= 1.0f || p.z >= 1.0f;
+  });
+  EXPECT_LT(white, static_cast<long>(frame.pixels.size() / 50));
 }
 
 TEST(ReferenceFrame, NumberOfThreadsChangesNoBit) {

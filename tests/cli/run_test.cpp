@@ -37,6 +37,23 @@ TEST_F(RunTest, ImageFilesAreFiltered) {
   EXPECT_EQ(place.read("filtered/color.png"), place.read("both/color.png"));
 }
 
+TEST_F(RunTest, TheReferenceHasTheFramesShadowMapUnlessRaysAreAskedFor) {
+  const auto psnr_db = [&](const std::string& flags) {
+    const Outcome outcome = place.hwsim(
+        "run sponza_hall:bays=3,detail=4 --resolution 96x54 -t ssaa16x --json --reference 16 --force "
+        "--out result " +
+        flags);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out)["image"]["psnr_db"].get<double>();
+  };
+  const double by_map = psnr_db(""), by_rays = psnr_db("--reference-shadows rays");
+  EXPECT_GT(by_map, by_rays + 2.0);
+  EXPECT_EQ(psnr_db("--set scene.reference_shadows=map"), by_map);
+  const Outcome wrong = run("-t none --reference 1 --reference-shadows both --out wrong");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.err.find("U003"), std::string::npos) << wrong.err;
+}
+
 TEST_F(RunTest, SettingsReachThePartThatHasTheParameter) {
   const Outcome outcome =
       run("-t msaa4x+fxaa:subpix=0.5 --set technique.preset=39 --set technique.centroid=off --json --out r");
