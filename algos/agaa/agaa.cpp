@@ -21,7 +21,7 @@ class Builder {
   Builder(const FrameRequest& request, const AgaaOptions& options)
       : graph_(request.scene, request.width_px, request.height_px),
         o_(options),
-        parts_(prepare_frame(graph_, request)),
+        parts_(prepare_gbuffer_frame(graph_, request)),
         pattern_(multicast_layers(request, o_.samples, o_.emulate)),
         features_(request.features) {
     layers_ = std::max(1, static_cast<int>(pattern_.viewports.size()));
@@ -53,7 +53,7 @@ class Builder {
     if (layers_ > 1 && !atomic_) add_merge();
     output_ = add_output(graph_);
     add_shade();
-    add_separate_on_output(graph_, parts_, output_);
+    add_over_output(graph_, parts_, output_, depth_, pattern_, false);
     return std::move(graph_);
   }
 
@@ -111,6 +111,7 @@ class Builder {
     alpha.insert(alpha.end(), parts_.draws.blend.begin(), parts_.draws.blend.end());
     if (!alpha.empty()) pass.batches.push_back(visibility_batch(alpha, true));
   }
+  add_opaque_separate(pass, parts_, SurfaceInputs::geometry, visibility_batch({}, false));
 
   DrawBatch visibility_batch(const std::vector<DrawCall>& draws, bool alpha) const {
     DrawBatch batch = mesh_batch(parts_, draws, mesh_geometry_program());
@@ -186,7 +187,8 @@ class Builder {
     u->view_z_row = -glm::vec4(view[0][2], view[1][2], view[2][2], view[3][2]);
     DrawBatch batch = generate_batch();
     batch.fragment_uniforms = std::move(u);
-    pass.batches.push_back(std::move(batch));
+    pass.batches.push_back(batch);
+    add_opaque_separate(pass, parts_, surface_inputs(parts_), std::move(batch));
   }
 
   // Algorithm 2, 1: every sample takes the first fragment that meets its depth, in submission order.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "algos/base/shaders/post.h"
 #include "pipeline/emulate/material_views.h"
 #include "pipeline/scene/shadow_view.h"
 #include "pipeline/scene/special_surfaces.h"
@@ -26,7 +27,7 @@ std::vector<DrawCall> back_to_front(ByDepth calls) {
 DrawLists list_draws(const FrameRequest& request, const Camera& camera) {
   const Scene& scene = *request.scene;
   DrawLists lists;
-  ByDepth blended, separate;
+  ByDepth blended, separate, separate_opaque, separate_rest;
   for (int i = 0; i < static_cast<int>(scene.instances.size()); ++i) {
     const Instance& instance = scene.instances[static_cast<std::size_t>(i)];
     const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
@@ -36,7 +37,10 @@ DrawLists list_draws(const FrameRequest& request, const Camera& camera) {
       const Mesh::Part& part = mesh.parts[static_cast<std::size_t>(p)];
       const Material& material = scene.materials[static_cast<std::size_t>(part.material)];
       if (request.separate && request.separate->takes(mesh, material)) {
-        separate.push_back({view_z, request.separate->prepare(scene, camera, {i, p})});
+        const SeparateCall call = request.separate->prepare(request, camera, {i, p});
+        separate.push_back({view_z, call.all});
+        if (call.opaque.list) separate_opaque.push_back({view_z, call.opaque});
+        if (call.rest.list) separate_rest.push_back({view_z, call.rest});
         continue;
       }
       switch (material.alpha_mode) {
@@ -54,6 +58,8 @@ DrawLists list_draws(const FrameRequest& request, const Camera& camera) {
   }
   lists.blend = back_to_front(std::move(blended));
   lists.separate = back_to_front(std::move(separate));
+  lists.separate_opaque = back_to_front(std::move(separate_opaque));
+  lists.separate_rest = back_to_front(std::move(separate_rest));
   return lists;
 }
 
@@ -158,26 +164,6 @@ DrawBatch surface_batch(const FrameParts& parts, const ForwardTarget& target,
   return batch;
 }
 
-/// Depth of what is opaque, at one sample a pixel, for passes over a finished image.
-ForwardTarget add_output_target(FrameGraph& graph, const FrameParts& parts, ImageId output) {
-  ForwardTarget target;
-  target.width = graph.width();
-  target.height = graph.height();
-  target.color = output;
-  target.depth = graph.add_image({"blended_depth", Format::d32_float, target.width, target.height, 1});
-  graph.add_clear("blended_clear", {target.depth});
-  Pass& pass = graph.add_pass("blended_depth", PassKind::draw);
-  pass.depth = target.depth;
-  const auto add = [&](const std::vector<DrawCall>& draws, bool alpha_test) {
-    if (draws.empty()) return;
-    pass.batches.push_back(depth_batch(parts.clip_from_world, draws, alpha_test));
-    pass.batches.back().state.raster.cull = CullMode::back;
-  };
-  add(parts.draws.opaque, false);
-  add(parts.draws.mask, true);
-  return target;
-}
-
 void add_separate(FrameGraph& graph, const FrameParts& parts, const std::string& prefix,
                   const ForwardTarget& target) {
   if (parts.draws.separate.empty()) return;
@@ -209,6 +195,10 @@ Pass& add_target_pass(FrameGraph& graph, const FrameParts& parts, const std::str
 
 const VertexProgram& surface_vertex_program(const FrameParts& parts) {
   return parts.full_varyings ? mesh_full_program() : mesh_surface_program();
+}
+
+SurfaceInputs surface_inputs(const FrameParts& parts) {
+  return parts.full_varyings ? SurfaceInputs::full : SurfaceInputs::basic;
 }
 
 DrawBatch mesh_batch(const FrameParts& parts, const std::vector<DrawCall>& draws,
@@ -326,14 +316,45 @@ void add_blended(FrameGraph& graph, const FrameParts& parts, const std::string& 
   pass.batches.push_back(std::move(batch));
 }
 
-void add_blended_on_output(FrameGraph& graph, const FrameParts& parts, ImageId output) {
-  if (parts.draws.blend.empty() && parts.draws.separate.empty()) return;
-  add_blended(graph, parts, "", add_output_target(graph, parts, output));
+FrameParts prepare_gbuffer_frame(FrameGraph& graph, const FrameRequest& request) {
+  FrameParts parts = prepare_frame(graph, request);
+  parts.draws.separate = std::move(parts.draws.separate_rest);
+  parts.draws.separate_rest.clear();
+  parts.separate_taken = true;
+  return parts;
 }
 
-void add_separate_on_output(FrameGraph& graph, const FrameParts& parts, ImageId output) {
-  if (parts.draws.separate.empty()) return;
-  add_separate(graph, parts, "", add_output_target(graph, parts, output));
+void add_opaque_separate(Pass& pass, const FrameParts& parts, SurfaceInputs inputs, DrawBatch like) {
+  if (parts.draws.separate_opaque.empty()) return;
+  const DrawBatch own = parts.request->separate->opaque_batch(parts, inputs);
+  like.vertex = own.vertex;
+  like.vertex_uniforms = own.vertex_uniforms;
+  like.draws = own.draws;
+  pass.batches.push_back(std::move(like));
+}
+
+void add_over_output(FrameGraph& graph, const FrameParts& parts, ImageId output, ImageId depth,
+                     const MulticastPattern& layers, bool blended) {
+  if (parts.draws.separate.empty() && (!blended || parts.draws.blend.empty())) return;
+  const ImageDesc like = graph.image(depth);
+  ForwardTarget target;
+  target.width = like.width;
+  target.height = like.height;
+  target.samples = like.samples;
+  target.layers = layers;
+  target.depth = depth;
+  target.color =
+      graph.add_image({"over", Format::rgba8_srgb, like.width, like.height, like.samples, like.layers});
+  graph.add_clear("over_clear", {target.color});
+  if (blended)
+    add_blended(graph, parts, "", target);
+  else
+    add_separate(graph, parts, "", target);
+  Pass& pass = add_full_screen(graph, "over", {target.color}, output, merge_program(),
+                               std::make_shared<MergeUniforms>(MergeUniforms{like.samples * like.layers}));
+  BlendState over = blend_over();  // what was drawn is multiplied by its alpha already
+  over.src_color = BlendFactor::one;
+  pass.state.blend = {over};
 }
 
 Pass& add_frame_compute(FrameGraph& graph, const std::string& name, const ComputeProgram& program,

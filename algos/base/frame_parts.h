@@ -16,6 +16,8 @@ struct DrawLists {
   std::vector<pipeline::DrawCall> mask;      ///< alpha-tested
   std::vector<pipeline::DrawCall> blend;     ///< back to front
   std::vector<pipeline::DrawCall> separate;  ///< back to front: what FrameRequest::separate takes
+  /// The same in two: what is opaque in this view, and the rest.
+  std::vector<pipeline::DrawCall> separate_opaque, separate_rest;
 };
 
 struct FrameParts {
@@ -26,6 +28,8 @@ struct FrameParts {
   bool full_varyings = false;  ///< some mesh has tangents or vertex colors
   pipeline::LightingUniforms lighting;
   pipeline::ImageId shadow_map;  ///< none without a shadow caster
+  /// The base draws `separate_opaque` by itself: `separate` is the rest (prepare_gbuffer_frame).
+  bool separate_taken = false;
 };
 
 /// The scene's lights and the point lights of the request, without a shadow map: what the ray-traced
@@ -53,16 +57,24 @@ struct ForwardTarget {
   pipeline::MulticastPattern layers;
 };
 
+/// What a draw hands to its fragments: nothing, or what the mesh programs of this name do.
+enum class SurfaceInputs : std::uint8_t { none, normal, geometry, basic, full };
+
+/// A draw that a modifier took, as a whole and in two.
+struct SeparateCall {
+  pipeline::DrawCall all, opaque, rest;  ///< without a list: nothing
+};
+
 /// Draws that a modifier takes from the bases: each base leaves them out of its own passes, and asks for
-/// theirs where it has lit color.
+/// theirs where it has lit color. A base with a G-buffer draws by itself what is opaque.
 class SeparateDraws {
  public:
   virtual ~SeparateDraws() = default;
   /// Whether a mesh part is one of them.
   virtual bool takes(const pipeline::Mesh& mesh, const pipeline::Material& material) const = 0;
-  /// The draw as it stands in DrawLists::separate: its triangles may be another list.
-  virtual pipeline::DrawCall prepare(const pipeline::Scene& scene, const pipeline::Camera& camera,
-                                     pipeline::DrawCall call) const = 0;
+  /// The draw as it stands in DrawLists: its triangles may be other lists.
+  virtual SeparateCall prepare(const FrameRequest& request, const pipeline::Camera& camera,
+                               pipeline::DrawCall call) const = 0;
   /// The name of their pass, after the base's prefix.
   virtual std::string pass_name() const = 0;
   /// Into lit color, with the depth of what is opaque.
@@ -70,7 +82,15 @@ class SeparateDraws {
                                                    const ForwardTarget& target) const = 0;
   /// Their depth alone, in the shape in which `batches` draws them.
   virtual pipeline::DrawBatch depth_batch(const FrameParts& parts, const ForwardTarget& target) const = 0;
+  /// What is opaque, in that shape, for fragment programs of the base's own.
+  virtual pipeline::DrawBatch opaque_batch(const FrameParts& parts, SurfaceInputs inputs) const = 0;
 };
+
+/// As prepare_frame, for bases that store surfaces before they light them: `separate` is what is not opaque.
+FrameParts prepare_gbuffer_frame(pipeline::FrameGraph& graph, const FrameRequest& request);
+/// The batch of what was taken, if there is any: state and fragment program are those of `like`.
+void add_opaque_separate(pipeline::Pass& pass, const FrameParts& parts, SurfaceInputs inputs,
+                         pipeline::DrawBatch like);
 
 /// The pass of a forward target: its viewports, attachments and the shadow map; without batches.
 pipeline::Pass& add_target_pass(pipeline::FrameGraph& graph, const FrameParts& parts, const std::string& name,
@@ -81,6 +101,8 @@ pipeline::DrawBatch mesh_batch(const FrameParts& parts, const std::vector<pipeli
                                const pipeline::VertexProgram& vertex);
 /// Hands on what materials need: the varyings of surfaces, all of them if some mesh has more than the basic.
 const pipeline::VertexProgram& surface_vertex_program(const FrameParts& parts);
+/// What that program hands on.
+SurfaceInputs surface_inputs(const FrameParts& parts);
 
 /// Background and depth cleared, then everything drawn: opaque, alpha-tested, blended.
 void add_forward(pipeline::FrameGraph& graph, const FrameParts& parts, const std::string& prefix,
@@ -91,12 +113,12 @@ void add_forward(pipeline::FrameGraph& graph, const FrameParts& parts, const std
 void add_blended(pipeline::FrameGraph& graph, const FrameParts& parts, const std::string& prefix,
                  const ForwardTarget& target);
 
-/// The same onto a finished image of one sample a pixel, when the frame's depth has more: opaque draws are
-/// repeated for a depth of its own. Adds nothing where there is nothing to draw.
-void add_blended_on_output(pipeline::FrameGraph& graph, const FrameParts& parts, pipeline::ImageId output);
-
-/// The same for separate draws alone: for bases that draw blended materials as coverage.
-void add_separate_on_output(pipeline::FrameGraph& graph, const FrameParts& parts, pipeline::ImageId output);
+/// The same over a finished image of one sample a pixel, where the frame's depth has more: into a layer of as
+/// many samples, whose mean goes over the image. Adds nothing where there is nothing to draw. `depth`: of
+/// what is opaque. `blended`: also the draws of blended materials; else separate ones alone, for bases that
+/// draw blended materials as coverage.
+void add_over_output(pipeline::FrameGraph& graph, const FrameParts& parts, pipeline::ImageId output,
+                     pipeline::ImageId depth, const pipeline::MulticastPattern& layers, bool blended);
 
 /// Depth-stencil image and color image in the frame's size times `scale`.
 ForwardTarget make_forward_target(pipeline::FrameGraph& graph, const std::string& name, int width, int height,

@@ -58,6 +58,7 @@ void add_gbuffer_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer&
   pass.color = g.attachments;
   pass.depth = g.depth;
   pass.batches.push_back(gbuffer_batch(parts, g, parts.draws.opaque, false));
+  add_opaque_separate(pass, parts, surface_inputs(parts), gbuffer_batch(parts, g, {}, false));
   if (parts.draws.mask.empty()) return;
   DrawBatch batch = gbuffer_batch(parts, g, parts.draws.mask, !g.alpha_to_coverage);
   batch.state.coverage.alpha_to_coverage = batch.state.coverage.alpha_dither = g.alpha_to_coverage;
@@ -175,7 +176,7 @@ void check_alpha_to_coverage(const GBuffer& g) {
 
 FrameGraph build_deferred(const FrameRequest& request, const DeferredOptions& options) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
-  const FrameParts parts = prepare_frame(graph, request);
+  const FrameParts parts = prepare_gbuffer_frame(graph, request);
   const GBuffer g = add_gbuffer(graph, options);
   add_gbuffer_pass(graph, parts, g);
   Pass& light = add_light_pass(graph, parts, g, "light", make_uniforms(graph, parts, g));
@@ -186,7 +187,7 @@ FrameGraph build_deferred(const FrameRequest& request, const DeferredOptions& op
 
 FrameGraph build_simple_complex(const FrameRequest& request, const SimpleComplexOptions& options) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
-  const FrameParts parts = prepare_frame(graph, request);
+  const FrameParts parts = prepare_gbuffer_frame(graph, request);
   GBuffer g = add_gbuffer(graph, options.gbuffer);
   g.alpha_to_coverage = options.alpha_to_coverage;
   check_alpha_to_coverage(g);

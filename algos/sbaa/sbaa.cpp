@@ -113,6 +113,8 @@ void add_visibility_pass(FrameGraph& graph, const FrameParts& parts, const Setup
   pass.depth = images.depth;
   pass.batches.push_back(visibility_batch(parts, o, parts.draws.opaque, false));
   if (!parts.draws.mask.empty()) pass.batches.push_back(visibility_batch(parts, o, parts.draws.mask, true));
+  add_opaque_separate(pass, parts, o.merges() ? SurfaceInputs::normal : SurfaceInputs::none,
+                      visibility_batch(parts, o, {}, false));
 }
 
 void add_analysis_pass(FrameGraph& graph, const FrameParts& parts, const Setup& o, const SbaaImages& images) {
@@ -164,6 +166,7 @@ void add_gbuffer_pass(FrameGraph& graph, const FrameParts& parts, const Setup& o
   pass.batches.push_back(record_batch(graph, parts, o, parts.draws.opaque, false));
   if (!parts.draws.mask.empty())
     pass.batches.push_back(record_batch(graph, parts, o, parts.draws.mask, true));
+  add_opaque_separate(pass, parts, surface_inputs(parts), record_batch(graph, parts, o, {}, false));
 }
 
 void add_shade_pass(FrameGraph& graph, const FrameParts& parts, const Setup& o, const SbaaImages& images,
@@ -189,14 +192,14 @@ void add_shade_pass(FrameGraph& graph, const FrameParts& parts, const Setup& o, 
 
 FrameGraph build(const FrameRequest& request, const Setup& o) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
-  const FrameParts parts = prepare_frame(graph, request);
+  const FrameParts parts = prepare_gbuffer_frame(graph, request);
   const SbaaImages images = add_images(graph, o);
   add_visibility_pass(graph, parts, o, images);
   add_analysis_pass(graph, parts, o, images);
   add_gbuffer_pass(graph, parts, o, images);
   const ImageId output = add_output(graph);
   add_shade_pass(graph, parts, o, images, output);
-  add_blended_on_output(graph, parts, output);
+  add_over_output(graph, parts, output, images.depth, {}, true);
   return graph;
 }
 

@@ -93,19 +93,27 @@ std::shared_ptr<const Scene> make(const WireScene& w) {
   return std::make_shared<const Scene>(std::move(scene));
 }
 
-Emulation run(const WireScene& wire, const std::string& technique) {
+Emulation run(const WireScene& wire, const std::string& technique, const GpuFeatures& features = {}) {
   algos::FrameRequest request;
   request.scene = make(wire);
   request.width_px = kWidth;
   request.height_px = kHeight;
+  request.features = features;
   const FrameGraph graph = algos::build_frame(algos::parse_technique(technique), request);
-  return emulate(graph, GpuFeatures{}, FunctionalConfig{}, {});
+  return emulate(graph, features, FunctionalConfig{}, {});
 }
 
 double column(const Image& image, int x) {
   double sum = 0.0;
   for (int y = 0; y < image.height; ++y) sum += image.at(x, y).x;
   return sum;
+}
+
+/// The mean of all columns: single ones of a slanted wire depend on where samples lie.
+double mean_column(const Image& image) {
+  double sum = 0.0;
+  for (int x = 0; x < image.width; ++x) sum += column(image, x);
+  return sum / image.width;
 }
 
 TEST(Wire, ACrossSectionHasTheEnergyOfTheTrueWidthAtEveryDistance) {
@@ -192,6 +200,74 @@ TEST(Wire, ThinWiresOverDeferredLightingAreThoseOfForward) {
   const Emulation forward = run(wire, "wire_aa+msaa8x"), deferred = run(wire, "wire_aa+deferred");
   EXPECT_GT(column(deferred.color, 30), 0.2);
   EXPECT_NEAR(column(deferred.color, 30), column(forward.color, 30), 0.02);
+}
+
+// Section 6.2.4 of the chapter. What is wider than a pixel goes into the G-buffer: nothing of it is left for
+// the pass that blends. What is thinner has the frame's samples, however few the lit image has: along a
+// slanted wire a column holds parts of two or three pixels, not one pixel.
+TEST(Wire, EveryBaseBlendsWhatIsThinAndStoresWhatIsWide) {
+  const char* const bases[] = {"deferred",
+                               "deferred_simple_complex",
+                               "deferred_simple_complex:lighting=compute",
+                               "sbaa_top:n=4",
+                               "sbaa_merge",
+                               "sbaa_merge:pack_id_normal=on",
+                               "agaa",
+                               "agaa:c=4",
+                               "agaa:msaa=32",
+                               "agaa:ndf=lean",
+                               "agaa:accumulate=atomics"};
+  WireScene thin;
+  thin.slope = 0.3f;
+  thin.radius = 0.3f * pixel_height_m(thin.distance);
+  WireScene wide = thin;
+  wide.radius = 2.0f * pixel_height_m(wide.distance);
+  const auto lit_pixels = [](const Image& image) {
+    int lit = 0;
+    for (const glm::vec4& p : image.pixels) lit += p.x > 0.01f ? 1 : 0;
+    return lit;
+  };
+  const Image reference = run(thin, "wire_aa:lighting=none+msaa8x").color;
+  ASSERT_GT(lit_pixels(reference), kWidth * 3 / 2);
+  for (const std::string base : bases) {
+    const Emulation e = run(thin, "wire_aa+" + base, every_feature(8));
+    EXPECT_NEAR(lit_pixels(e.color), lit_pixels(reference), kWidth / 3) << base;
+    EXPECT_NEAR(mean_column(e.color), mean_column(reference), 0.03) << base;
+    const Emulation whole = run(wide, "wire_aa+" + base, every_feature(8)),
+                    plain = run(wide, base, every_feature(8));
+    for (const PassWork& pass : whole.trace.passes)
+      if (pass.name == "wires") {
+        EXPECT_EQ(total(pass).ps.invocations, 0u) << base;
+      }
+    EXPECT_NEAR(mean_column(whole.color), mean_column(plain.color), 0.02) << base;
+  }
+}
+
+TEST(Wire, ManySamplesHaveWiresToo) {
+  WireScene wire;
+  wire.slope = 0.3f;
+  wire.radius = 0.3f * pixel_height_m(wire.distance);
+  const Image reference = run(wire, "wire_aa+msaa8x").color;
+  for (const std::string base : {"msaa16x", "msaa32x", "csaa", "ssaa4x", "sss_cs"})
+    EXPECT_NEAR(mean_column(run(wire, "wire_aa+" + base, every_feature(8)).color), mean_column(reference),
+                base == "csaa" ? 0.04 : 0.03)  // csaa keeps fewer colors than coverage positions
+        << base;
+}
+
+// The G-buffer's lighting is that of any surface, so its normals bend: thinner than four pixels a wire is lit
+// more evenly than plain rendering lights it.
+TEST(Wire, StoredNormalsBendAsWiresThin) {
+  for (const float width_px : {1.5f, 5.0f}) {
+    WireScene wire;
+    wire.emissive = false;
+    wire.radius = 0.5f * width_px * pixel_height_m(wire.distance);
+    const double bent = column(run(wire, "wire_aa+deferred").color, 30),
+                 plain = column(run(wire, "wire_aa:lighting=none+deferred").color, 30);
+    if (width_px < 4.0f)
+      EXPECT_GT(std::abs(bent - plain), 0.02);
+    else
+      EXPECT_NEAR(bent, plain, 1e-3);
+  }
 }
 
 TEST(Wire, SoftLightingTakesOverAsAWireThins) {

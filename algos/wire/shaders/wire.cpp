@@ -16,7 +16,9 @@ namespace hwsim::algos::HWY_NAMESPACE {
 namespace lanes = pipeline::HWY_NAMESPACE;
 using lanes::Vec3;
 
-/// Eq. 6.1 and Listing 6.1; the displaced radius is the clamped one (docs/techniques/wire.md).
+/// Eq. 6.1 and Listing 6.1; the displaced radius is the clamped one (docs/techniques/wire.md). Positions come
+/// from the same operations whatever is handed on, so that depth is the same in all passes.
+template <WireOutput kOutput>
 struct WireVertexShader {
   template <class S>
   static void run(S& s, const WireVertexUniforms& u) {
@@ -41,21 +43,65 @@ struct WireVertexShader {
     // Wide wires stay where plain rendering has them, to the bit.
     const Vec3<F> p = select(thin, center + out * (r_least / max(scale, s.constant(1e-30f))), surface);
     for (int r = 0; r < 4; ++r) s.clip(r, row(r, p));
-    for (int r = 0; r < 3; ++r) s.varying(V::kNormal + r, s.normal(r, n));
-    s.varying(V::kUv0, s.attribute(S::kUv, 0));
-    s.varying(V::kUv0 + 1, s.attribute(S::kUv, 1));
-    s.varying(V::kPosition, p.x);
-    s.varying(V::kPosition + 1, p.y);
-    s.varying(V::kPosition + 2, p.z);
-    const Vec3<F> t = s.attribute3(S::kTangent);
-    for (int r = 0; r < 3; ++r) s.varying(V::kTangent + r, s.world_direction(r, t));
-    s.varying(V::kTangent + 3, s.attribute(S::kTangent, 3));
-    for (int i = 0; i < 4; ++i) s.varying(V::kColor + i, s.attribute(S::kColor, i));
-    s.varying(V::kUv1, s.attribute(S::kUv1, 0));
-    s.varying(V::kUv1 + 1, s.attribute(S::kUv1, 1));
-    s.varying(WireVaryings::kFade, select(thin, r_true / max(r_least, s.constant(1e-30f)), s.constant(1.0f)));
-    s.varying(WireVaryings::kRadius, r_true);
-    s.varying(WireVaryings::kW, w);
+    if constexpr (kOutput == WireOutput::geometry) hand_on_geometry(s, p);
+    if constexpr (kOutput == WireOutput::normal || kOutput >= WireOutput::basic) {
+      const Vec3<F> normal = {s.normal(0, n), s.normal(1, n), s.normal(2, n)};
+      hand_on(s, V::kNormal, u.bend ? bent(s, u, p, normal, r_true, w) : normal);
+    }
+    if constexpr (kOutput >= WireOutput::basic) {
+      hand_on_uv(s, V::kUv0, S::kUv);
+      hand_on(s, V::kPosition, p);
+    }
+    if constexpr (kOutput >= WireOutput::full) {
+      hand_on(s, V::kTangent, world_tangent(s));
+      s.varying(V::kTangent + 3, s.attribute(S::kTangent, 3));
+      for (int i = 0; i < 4; ++i) s.varying(V::kColor + i, s.attribute(S::kColor, i));
+      hand_on_uv(s, V::kUv1, S::kUv1);
+    }
+    if constexpr (kOutput == WireOutput::wire) {
+      s.varying(WireVaryings::kFade,
+                select(thin, r_true / max(r_least, s.constant(1e-30f)), s.constant(1.0f)));
+      s.varying(WireVaryings::kRadius, r_true);
+      s.varying(WireVaryings::kW, w);
+    }
+  }
+
+ private:
+  template <class S, class F>
+  static void hand_on(S& s, int first, const Vec3<F>& v) {
+    s.varying(first, v.x);
+    s.varying(first + 1, v.y);
+    s.varying(first + 2, v.z);
+  }
+  template <class S, class F>
+  static void hand_on_geometry(S& s, const Vec3<F>& p) {
+    using G = pipeline::GeometryVaryings;
+    hand_on(s, G::kPosition, p);
+    hand_on_uv(s, G::kUv0, S::kAlphaUv);
+  }
+  template <class S>
+  static void hand_on_uv(S& s, int first, int attribute) {
+    s.varying(first, s.attribute(attribute, 0));
+    s.varying(first + 1, s.attribute(attribute, 1));
+  }
+  template <class S>
+  static Vec3<typename S::F> world_tangent(S& s) {
+    const Vec3<typename S::F> t = s.attribute3(S::kTangent);
+    return {s.world_direction(0, t), s.world_direction(1, t), s.world_direction(2, t)};
+  }
+
+  /// What WireShader::flattened does in each pixel: what it blends are the same for a cross-section.
+  template <class S, class F>
+  static Vec3<F> bent(S& s, const WireVertexUniforms& u, const Vec3<F>& p, const Vec3<F>& normal, F r_true,
+                      F w) {
+    const F true_px = r_true / max(w * s.constant(u.pixel_scale), s.constant(1e-30f));
+    const F scale = s.constant(1.0f / (u.full_light_px - 1.0f));
+    const F share = min(max((true_px - s.constant(1.0f)) * scale, s.constant(0.0f)), s.constant(1.0f));
+    const Vec3<F> eye = {s.constant(u.eye.x), s.constant(u.eye.y), s.constant(u.eye.z)};
+    const Vec3<F> n = normalize(normal), t = normalize(world_tangent(s)), v = normalize(eye - p);
+    const Vec3<F> across = v - t * dot(v, t);
+    const Vec3<F> flat = normalize(lerp(normalize(across), n, share));
+    return select(dot(across, across) < s.constant(1e-6f), n, flat);
   }
 };
 
@@ -116,8 +162,26 @@ struct WireShader {
   }
 };
 
-void run_wire_vertex(pipeline::VertexBatch& batch, const void* uniforms) {
-  lanes::run_vertex_shader<WireVertexShader>(batch, *static_cast<const WireVertexUniforms*>(uniforms));
+template <WireOutput kOutput>
+void run_vertex(pipeline::VertexBatch& batch, const void* uniforms) {
+  lanes::run_vertex_shader<WireVertexShader<kOutput>>(batch,
+                                                      *static_cast<const WireVertexUniforms*>(uniforms));
+}
+void run_wire_vertex(WireOutput output, pipeline::VertexBatch& batch, const void* uniforms) {
+  switch (output) {
+    case WireOutput::position:
+      return run_vertex<WireOutput::position>(batch, uniforms);
+    case WireOutput::normal:
+      return run_vertex<WireOutput::normal>(batch, uniforms);
+    case WireOutput::geometry:
+      return run_vertex<WireOutput::geometry>(batch, uniforms);
+    case WireOutput::basic:
+      return run_vertex<WireOutput::basic>(batch, uniforms);
+    case WireOutput::full:
+      return run_vertex<WireOutput::full>(batch, uniforms);
+    case WireOutput::wire:
+      return run_vertex<WireOutput::wire>(batch, uniforms);
+  }
 }
 void run_wire_all(pipeline::FragmentBatch& b, const void* u) {
   lanes::run_fragment_shader<WireShader<WirePart::all>>(b, u);
@@ -162,16 +226,28 @@ FragmentProgram describe_wire(bool extended, void (*run)(FragmentBatch&, const v
 }
 }  // namespace
 
-const pipeline::VertexProgram& wire_vertex_program() {
-  static const pipeline::VertexProgram program =
-      pipeline::HWY_NAMESPACE::describe_vertex_shader<HWY_NAMESPACE::WireVertexShader>(
-          "wire",
-          [](pipeline::VertexBatch& b, const void* u) {
-            HWY_DYNAMIC_DISPATCH(run_wire_vertex)
-            (b, u);
-          },
-          WireVertexUniforms{});
-  return program;
+namespace {
+template <WireOutput kOutput>
+pipeline::VertexProgram describe_vertex() {
+  WireVertexUniforms uniforms;
+  uniforms.bend = true;  // where normals are handed on to others' programs
+  if constexpr (kOutput == WireOutput::wire) uniforms.bend = false;
+  return pipeline::HWY_NAMESPACE::describe_vertex_shader<HWY_NAMESPACE::WireVertexShader<kOutput>>(
+      "wire",
+      [](pipeline::VertexBatch& b, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_wire_vertex)
+        (kOutput, b, u);
+      },
+      uniforms);
+}
+}  // namespace
+
+const pipeline::VertexProgram& wire_vertex_program(WireOutput output) {
+  using enum WireOutput;
+  static const pipeline::VertexProgram programs[] = {describe_vertex<position>(), describe_vertex<normal>(),
+                                                     describe_vertex<geometry>(), describe_vertex<basic>(),
+                                                     describe_vertex<full>(),     describe_vertex<wire>()};
+  return programs[static_cast<std::size_t>(output)];
 }
 
 namespace {

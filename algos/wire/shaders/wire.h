@@ -19,6 +19,9 @@ struct WireVertexUniforms {
   glm::mat4 clip_from_world{1.0f};
   float pixel_scale = 0.0f;  ///< half the height of a pixel in the world where w = 1
   float width_px = 1.0f;
+  bool bend = false;  ///< normals are flattened here, for fragment programs that know nothing of wires
+  glm::vec3 eye{0.0f};
+  float full_light_px = 4.0f;
 };
 
 struct WireUniforms {
@@ -35,7 +38,11 @@ struct WireVaryings {
 
 enum class WirePart { all, wide, faded };  ///< fragments of wires above, or below, the least width
 
-const pipeline::VertexProgram& wire_vertex_program();
+/// What the vertex program hands on: what the mesh programs of these names do, or all that wire_program
+/// takes.
+enum class WireOutput { position, normal, geometry, basic, full, wire };
+
+const pipeline::VertexProgram& wire_vertex_program(WireOutput output);
 /// `extended`: the lighting's.
 const pipeline::FragmentProgram& wire_program(WirePart part, bool extended);
 
