@@ -110,8 +110,8 @@ class Builder {
     std::vector<DrawCall> alpha = parts_.draws.mask;  // alpha is coverage (docs/techniques/agaa.md#alpha)
     alpha.insert(alpha.end(), parts_.draws.blend.begin(), parts_.draws.blend.end());
     if (!alpha.empty()) pass.batches.push_back(visibility_batch(alpha, true));
+    add_opaque_separate(pass, parts_, SurfaceInputs::geometry, visibility_batch({}, false));
   }
-  add_opaque_separate(pass, parts_, SurfaceInputs::geometry, visibility_batch({}, false));
 
   DrawBatch visibility_batch(const std::vector<DrawCall>& draws, bool alpha) const {
     DrawBatch batch = mesh_batch(parts_, draws, mesh_geometry_program());
@@ -140,7 +140,7 @@ class Builder {
     u->perspective = perspective_;
     u->separation = static_cast<float>(o_.separation);
     u->unit_mean_normal = o_.mean_normal == AgaaMeanNormal::unit;
-    u->squared_sums = o_.seed_sum == AgaaSeedSum::squares;
+    u->seeds = o_.seeds;
     // A layer's planes are its own: layers that stand for one pixel would have to be matched.
     const bool wanted = o_.plane_path == AgaaPlanePath::on ||
                         (o_.plane_path == AgaaPlanePath::automatic && features_.compressed_depth_read);

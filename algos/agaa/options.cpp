@@ -26,7 +26,9 @@ void describe_definition(OptionList& list, AgaaOptions& o) {
   list.choice("k_mode", o.k_mode, "world|footprint", "k as given, or at least footprint_px pixels");
   list.real("footprint_px", o.footprint_px, {1, 64}, "with k_mode=footprint");
   list.choice("mean_normal", o.mean_normal, "unit|raw", "of the first seed's search");
-  list.choice("seed_sum", o.seed_sum, "d|d2", "further seeds: by sums of distances, or of their squares");
+  list.choice(
+      "seeds", o.seeds, "farthest|sum|sum2",
+      "further seeds: farthest from their nearest seed, or by sums of distances, or of their squares");
 }
 
 void describe_storage(OptionList& list, AgaaOptions& o) {

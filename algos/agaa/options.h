@@ -11,9 +11,8 @@ namespace hwsim::algos {
 
 enum class AgaaBrdf : std::uint8_t { blinn_phong, ggx };
 enum class AgaaGloss : std::uint8_t { folded, separate };
-enum class AgaaScale : std::uint8_t { world, footprint };      ///< what the length k is measured by
-enum class AgaaMeanNormal : std::uint8_t { unit, raw };        ///< in the search of the first seed
-enum class AgaaSeedSum : std::uint8_t { distances, squares };  ///< by which further seeds are found
+enum class AgaaScale : std::uint8_t { world, footprint };  ///< what the length k is measured by
+enum class AgaaMeanNormal : std::uint8_t { unit, raw };    ///< in the search of the first seed
 enum class AgaaAccumulate : std::uint8_t { automatic, blend, atomics };
 enum class AgaaPlanePath : std::uint8_t { automatic, on, off };
 enum class AgaaShadowAxis : std::uint8_t { depth, places, receiver };
@@ -30,7 +29,7 @@ struct AgaaOptions {
   AgaaScale k_mode = AgaaScale::world;
   double footprint_px = 8.0;
   AgaaMeanNormal mean_normal = AgaaMeanNormal::unit;
-  AgaaSeedSum seed_sum = AgaaSeedSum::distances;
+  SeedRule seeds = SeedRule::farthest;
   int shadow_taps = 4;
   MaskStore mask = MaskStore::natural;
   bool half_floats = false;

@@ -93,7 +93,7 @@ TEST(Options, NamesOfAgaaMeanTheirFields) {
                                 FIELD("k_mode", o.k_mode),
                                 FIELD("footprint_px", o.footprint_px),
                                 FIELD("mean_normal", o.mean_normal),
-                                FIELD("seed_sum", o.seed_sum),
+                                FIELD("seeds", o.seeds),
                                 FIELD("shadow_taps", o.shadow_taps),
                                 FIELD("agg_bytes", o.mask),
                                 FIELD("agg_float", o.half_floats),

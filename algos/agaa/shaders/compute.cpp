@@ -209,17 +209,18 @@ class Clusters {
     s_.count(AgaaCounters::agaa_aggregates, covered_);
   }
 
-  // Sums over the seeds so far; the first sum is the distance to the first seed.
+  // Over the seeds so far: the distance to the nearest one, or sums; for the first seed all are its distance.
   void add_distances(int seed, M mask) {
     s_.loop(kSumBlock, u_.samples, mask, [&](int i) HWY_ATTR {
       const auto n = static_cast<std::size_t>(i);
       F d = distance(sample_[n], seed_[static_cast<std::size_t>(seed)]);
-      if (u_.squared_sums) d = d * d;
-      sum_[n] = seed == 0 ? d : sum_[n] + d;
+      if (u_.seeds == SeedRule::square_sums) d = d * d;
+      far_[n] = seed == 0 ? d : u_.seeds == SeedRule::farthest ? min(far_[n], d) : far_[n] + d;
     });
   }
 
-  // The sample farthest from all seeds, unless it is too near to one of them.
+  // The sample farthest from the seeds, unless it is too near to one of them. By sums that ends the search
+  // early: the largest one lies at an extreme of the pixel, where a seed is already.
   void find_seed(int j) {
     const auto index = static_cast<std::size_t>(j);
     const M open = exists_[index - 1];
@@ -229,8 +230,8 @@ class Clusters {
       SurfaceSample<F> candidate = first_;
       s_.loop(kFarthestBlock, u_.samples, open, [&](int i) HWY_ATTR {
         const auto n = static_cast<std::size_t>(i);
-        const M better = visible_[n] & (sum_[n] > farthest);
-        farthest = select(better, sum_[n], farthest);
+        const M better = visible_[n] & (far_[n] > farthest);
+        farthest = select(better, far_[n], farthest);
         candidate = pick(better, sample_[n], candidate);
       });
       M apart = open;
@@ -300,7 +301,7 @@ class Clusters {
   const DefineUniforms& u_;
   std::array<SurfaceSample<F>, 32> sample_;
   std::array<M, 32> visible_;
-  std::array<F, 32> sum_;
+  std::array<F, 32> far_;
   SurfaceSample<F> first_{}, mean_{};
   std::array<SurfaceSample<F>, 4> seed_{};
   std::array<M, 4> exists_;

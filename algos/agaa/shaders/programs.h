@@ -12,6 +12,9 @@
 namespace hwsim::algos {
 
 enum class Ndf { toksvig, lean, sggx };
+/// Which sample becomes a seed beyond the second: the one whose nearest seed is farthest, or the one with the
+/// largest sum of distances to the seeds, or of their squares.
+enum class SeedRule { farthest, sums, square_sums };
 enum class DiffuseFilter { off, folded, geometric, samples };
 
 /// The center rays of pixels: at view depth d pixel (x, y) sees, relative to the eye,
@@ -63,7 +66,7 @@ struct DefineUniforms {
   bool perspective = true;
   float separation = 0.02f;  ///< t
   bool unit_mean_normal = true;
-  bool squared_sums = false;  ///< seeds beyond the second by sums of d^2 instead of d
+  SeedRule seeds = SeedRule::farthest;
   bool reads_planes = false;  ///< tiles that depth compression holds as few planes take those for aggregates
 };
 /// Pass 2: image 0 depth, 1 normal codes; target 0 the codes, eight samples a layer.
