@@ -145,9 +145,10 @@ void add_points(CLI::App& app, RunOptions& run) {
 }
 
 void add_reference_shadows(CLI::App& app, ViewOptions& view) {
-  app.add_option("--reference-shadows", view.reference_shadows,
-                 "The reference's shadows: map (the frame's own, default) or rays")
-      ->type_name("map|rays");
+  add_choice<std::string>(app, "--reference-shadows",
+                          "The reference's shadows: map (the frame's own, default) or rays",
+                          {{"map", "map"}, {"rays", "rays"}},
+                          [&view](const std::string& value) { view.reference_shadows = value; });
 }
 
 void add_reference_samples(CLI::App& app, RunOptions& run) {

@@ -26,7 +26,7 @@ struct GroundTruthOptions {
   /// footprints together fill the pixel.
   float footprint_scale = 0.0f;
   int jobs = 1;
-  bool shadows = true;  ///< of the shadow-casting directional light; no other light casts any
+  bool shadows = true;  ///< the shadow-casting directional light has its shadows; no other light casts any
   /// Those of the frame that is compared. None: make_lighting.
   std::optional<LightingUniforms> lighting{};
   /// The frame's shadow map, depths in r, looked up by the frame's own shader as `lighting` says. Null: rays.

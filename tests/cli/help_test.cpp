@@ -93,7 +93,8 @@ TEST(HelpTest, ExplainsExactlyTheCodesThatTheSourcesUse) {
     if (!fs::exists(fs::path(hwsim::test::source_dir()) / folder)) continue;
     for (const fs::directory_entry& entry :
          fs::recursive_directory_iterator(fs::path(hwsim::test::source_dir()) / folder)) {
-      if (entry.path().extension() != ".cpp" || entry.path().filename() == "error_codes.cpp") continue;
+      const std::string ending = entry.path().extension().string();
+      if ((ending != ".cpp" && ending != ".h") || entry.path().filename() == "error_codes.cpp") continue;
       std::ifstream file(entry.path());
       std::ostringstream buffer;
       buffer << file.rdbuf();
