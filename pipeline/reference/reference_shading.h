@@ -1,7 +1,7 @@
 #pragma once
 // The ground truth shaded by the emulator's own templates (shade/surface-inl.h, shade/lighting-inl.h) on a
-// scalar lane: what differs from an emulated frame is sampling, filtering of shadows and storage formats,
-// never the material.
+// scalar lane: what differs from an emulated frame is sampling, storage formats and, with rays in place of a
+// shadow map, shadows; never the material.
 #include <functional>
 #include <memory>
 #include <optional>
