@@ -27,8 +27,8 @@ struct Overloaded : Functions... {
 template <class... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;  // clang 14 does not deduce it from the aggregate
 
-CommonOptions common_of(const Command& command) {
-  return std::visit(Overloaded{[](const PrintText&) { return CommonOptions{}; },
+CommonArguments common_of(const Command& command) {
+  return std::visit(Overloaded{[](const PrintText&) { return CommonArguments{}; },
                                [](const auto& options) { return options.common; }},
                     command);
 }
@@ -38,23 +38,23 @@ ExitStatus dispatch(const Command& command, Context& context) {
                                  write_output(text.text);
                                  return ExitStatus::done;
                                },
-                               [&](const RunOptions& o) { return run(o, context); },
-                               [&](const CompareOptions& o) { return compare(o, context); },
-                               [&](const ExplainOptions& o) { return explain(o, context); },
-                               [&](const RankOptions& o) { return rank(o, context); },
-                               [&](const SweepOptions& o) { return sweep(o, context); },
-                               [&](const ReferenceOptions& o) { return reference(o, context); },
-                               [&](const ListOptions& o) { return list(o, context); },
-                               [&](const ShowOptions& o) { return show_entry(o, context); },
-                               [&](const SceneCheckOptions& o) { return scene_check(o, context); },
-                               [&](const ConfigOptions& o) { return config(o, context); },
-                               [&](const DoctorOptions& o) { return doctor(o, context); },
-                               [&](const HelpOptions& o) { return help(o, context); },
-                               [&](const CacheOptions& o) { return cache(o, context); },
-                               [&](const FitOptions& o) { return fit(o, context); },
-                               [&](const ValidateOptions& o) { return validate(o, context); },
-                               [&](const ReproduceOptions& o) { return reproduce(o, context); },
-                               [&](const CompletionOptions& o) { return completion(o, context); }},
+                               [&](const RunArguments& o) { return run(o, context); },
+                               [&](const CompareArguments& o) { return compare(o, context); },
+                               [&](const ExplainArguments& o) { return explain(o, context); },
+                               [&](const RankArguments& o) { return rank(o, context); },
+                               [&](const SweepArguments& o) { return sweep(o, context); },
+                               [&](const ReferenceArguments& o) { return reference(o, context); },
+                               [&](const ListArguments& o) { return list(o, context); },
+                               [&](const ShowArguments& o) { return show_entry(o, context); },
+                               [&](const SceneCheckArguments& o) { return scene_check(o, context); },
+                               [&](const ConfigArguments& o) { return config(o, context); },
+                               [&](const DoctorArguments& o) { return doctor(o, context); },
+                               [&](const HelpArguments& o) { return help(o, context); },
+                               [&](const CacheArguments& o) { return cache(o, context); },
+                               [&](const FitArguments& o) { return fit(o, context); },
+                               [&](const ValidateArguments& o) { return validate(o, context); },
+                               [&](const ReproduceArguments& o) { return reproduce(o, context); },
+                               [&](const CompletionArguments& o) { return completion(o, context); }},
                     command);
 }
 
@@ -104,7 +104,7 @@ ExitStatus run_program(int argc, char** argv) {
   Context context{{argv, argv + argc}, inspect_terminal({}), Log({}, inspect_terminal({}))};
   try {
     const Command command = parse_arguments(argc, argv);
-    const CommonOptions common = common_of(command);
+    const CommonArguments common = common_of(command);
     context.terminal = inspect_terminal(common);
     context.log = Log(common, context.terminal);
     return dispatch(command, context);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cost_models/covariance.h"
+#include "cost_models/published.h"
 #include "hwsim/config/assign.h"
 #include "hwsim/gpu/gpu_keys.h"
 #include "hwsim/gpu/gpu_show.h"
@@ -13,8 +14,6 @@ namespace hwsim::cost_models {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string technique_id(const std::string& text) { return text.substr(0, text.find(':')); }
 
 Json parameter_json(const CalibratedParameter& p) {
   return {{"scope", scope_name(p.scope)},

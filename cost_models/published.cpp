@@ -263,6 +263,10 @@ std::string RunSpec::to_string() const {
          (settings.empty() ? "" : ", " + settings) + ", on " + gpu;
 }
 
+std::string technique_id(std::string_view technique) {
+  return std::string(technique.substr(0, technique.find(':')));
+}
+
 RunSpec without_lights(const RunSpec& run) {
   RunSpec unlit = run;
   unlit.settings.clear();

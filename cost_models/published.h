@@ -33,6 +33,9 @@ struct RunSpec {
   friend auto operator<=>(const RunSpec&, const RunSpec&) = default;
 };
 
+/// "sbaa_top" from "sbaa_top:n=2,msaa=8": what the registry calls it.
+std::string technique_id(std::string_view technique);
+
 /// The run without its added lights; `unlit` must not be empty.
 RunSpec without_lights(const RunSpec& run);
 

@@ -17,11 +17,6 @@ namespace {
 
 constexpr double kCoverage = 0.9;
 
-/// The registry's name of the technique: what a user would call one.
-std::string technique_id(const Cell& cell) {
-  return cell.run.technique.substr(0, cell.run.technique.find(':'));
-}
-
 /// Techniques of the same table, scene, GPU, light and stage are ranked against each other.
 std::string rank_group(const Cell& cell) {
   const PublishedRow& r = cell.row;
@@ -48,7 +43,7 @@ std::vector<std::string> folds(const Experiment& experiment, const std::vector<b
     if (!all[i]) continue;
     const Cell& cell = experiment.cells[i];
     if (split == Split::leave_scene_out) names[i] = cell.scene_group;
-    if (split == Split::leave_technique_out) names[i] = technique_id(cell);
+    if (split == Split::leave_technique_out) names[i] = technique_id(cell.run.technique);
     if (split == Split::leave_gpu_out) names[i] = cell.run.gpu;
     // SSS has one rate for each technique: no lower rate of the same technique to learn from.
     if (split == Split::rate_extrapolation && cell.row.document != "SSS" &&

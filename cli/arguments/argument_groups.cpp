@@ -38,7 +38,7 @@ CLI::Option* add_repeatable(CLI::App& app, const std::string& flag, std::vector<
   return app.add_option(flag, target, std::move(description))->allow_extra_args(false)->type_name(type);
 }
 
-void add_common(CLI::App& app, CommonOptions& common) {
+void add_common(CLI::App& app, CommonArguments& common) {
   CLI::App* group = app.add_option_group("Output and progress");
   group
       ->add_option_function<std::vector<std::string>>(
@@ -52,7 +52,7 @@ void add_common(CLI::App& app, CommonOptions& common) {
   group->add_flag_callback(
       "--json",
       [&common] {
-        common.formats.push_back({Format::json, ""});
+        common.formats.push_back({OutputFormat::json, ""});
       },
       "--format json");
   group->add_flag_callback(
@@ -92,7 +92,7 @@ void add_out(CLI::App& app, OutPlace& out) {
   app.add_flag("--force", out.force, "Replace the results in --out");
 }
 
-void add_view_flags(CLI::App& app, ViewOptions& view) {
+void add_view_flags(CLI::App& app, ViewArguments& view) {
   app.add_option_function<std::string>(
          "--resolution", [&view](const std::string& text) { view.resolution = parse_resolution(text); },
          "Pixels, 1 to 16384 each way; default 1280x720")
@@ -110,14 +110,14 @@ void add_view_flags(CLI::App& app, ViewOptions& view) {
   add_sets(app, view.sets);
 }
 
-void add_view(CLI::App& app, ViewOptions& view, bool required) {
+void add_view(CLI::App& app, ViewArguments& view, bool required) {
   app.add_option("SCENE", view.scene, "A .gltf or .glb file, or a generator: name:key=value,key=value")
       ->required(required)
       ->type_name(" ");
   add_view_flags(app, view);
 }
 
-void add_points(CLI::App& app, RunOptions& run) {
+void add_points(CLI::App& app, RunArguments& run) {
   app.add_option_function<std::vector<std::string>>(
          "-t,--technique",
          [&run](const std::vector<std::string>& texts) {
@@ -144,14 +144,14 @@ void add_points(CLI::App& app, RunOptions& run) {
   app.add_flag("--no-cache", run.no_cache, "Emulate anew, and keep no traces");
 }
 
-void add_reference_shadows(CLI::App& app, ViewOptions& view) {
+void add_reference_shadows(CLI::App& app, ViewArguments& view) {
   add_choice<std::string>(app, "--reference-shadows",
                           "The reference's shadows: map (the frame's own, default) or rays",
                           {{"map", "map"}, {"rays", "rays"}},
                           [&view](const std::string& value) { view.reference_shadows = value; });
 }
 
-void add_reference_samples(CLI::App& app, RunOptions& run) {
+void add_reference_samples(CLI::App& app, RunArguments& run) {
   app.add_option("--reference", run.reference_samples,
                  "Compare with the ray-traced reference of so many samples a pixel; default 64")
       ->check(CLI::Range(1, 65536))

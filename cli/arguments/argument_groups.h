@@ -11,17 +11,17 @@ namespace hwsim::cli {
 /// A flag that may be given several times, with one value each time.
 CLI::Option* add_repeatable(CLI::App& app, const std::string& flag, std::vector<std::string>& target,
                             std::string description, const std::string& type);
-void add_common(CLI::App& app, CommonOptions& common);
+void add_common(CLI::App& app, CommonArguments& common);
 void add_sets(CLI::App& app, std::vector<std::string>& sets);
 void add_overlays(CLI::App& app, std::vector<std::string>& overlays);
 void add_out(CLI::App& app, OutPlace& out);
-void add_view_flags(CLI::App& app, ViewOptions& view);
+void add_view_flags(CLI::App& app, ViewArguments& view);
 /// The scene itself, then the flags of its view.
-void add_view(CLI::App& app, ViewOptions& view, bool required);
+void add_view(CLI::App& app, ViewArguments& view, bool required);
 /// Which techniques on which GPUs.
-void add_points(CLI::App& app, RunOptions& run);
-void add_reference_shadows(CLI::App& app, ViewOptions& view);
-void add_reference_samples(CLI::App& app, RunOptions& run);
+void add_points(CLI::App& app, RunArguments& run);
+void add_reference_shadows(CLI::App& app, ViewArguments& view);
+void add_reference_samples(CLI::App& app, RunArguments& run);
 void add_vary(CLI::App& app, std::vector<std::string>& vary, bool& zip);
 
 }  // namespace hwsim::cli

@@ -8,9 +8,11 @@
 namespace hwsim::cli {
 namespace {
 
-Format format_from_name(const std::string& name) {
-  static const std::map<std::string, Format, std::less<>> formats = {
-      {"table", Format::table}, {"csv", Format::csv}, {"json", Format::json}, {"md", Format::md}};
+OutputFormat format_from_name(const std::string& name) {
+  static const std::map<std::string, OutputFormat, std::less<>> formats = {{"table", OutputFormat::table},
+                                                                           {"csv", OutputFormat::csv},
+                                                                           {"json", OutputFormat::json},
+                                                                           {"md", OutputFormat::md}};
   if (const auto found = formats.find(name); found != formats.end()) return found->second;
   const std::vector<std::string> words = {"table", "csv", "json", "md"};
   fail_usage("U003", "--format is `" + name + "`, must be table, csv, json or md", did_you_mean(name, words));

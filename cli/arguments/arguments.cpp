@@ -38,23 +38,23 @@ class HelpFormatter : public CLI::Formatter {
 /// The application and what its flags write to.
 struct Parser {
   CLI::App app{std::string(kHelpTop), "hwsim"};
-  RunOptions run;
-  CompareOptions compare;
-  ExplainOptions explain;
-  RankOptions rank;
-  SweepOptions sweep;
-  ReferenceOptions reference;
-  ListOptions list;
-  ShowOptions show;
-  SceneCheckOptions scene_check;
-  ConfigOptions config;
-  DoctorOptions doctor;
-  HelpOptions help;
-  CacheOptions cache;
-  FitOptions fit;
-  ValidateOptions validate;
-  ReproduceOptions reproduce;
-  CompletionOptions completion;
+  RunArguments run;
+  CompareArguments compare;
+  ExplainArguments explain;
+  RankArguments rank;
+  SweepArguments sweep;
+  ReferenceArguments reference;
+  ListArguments list;
+  ShowArguments show;
+  SceneCheckArguments scene_check;
+  ConfigArguments config;
+  DoctorArguments doctor;
+  HelpArguments help;
+  CacheArguments cache;
+  FitArguments fit;
+  ValidateArguments validate;
+  ReproduceArguments reproduce;
+  CompletionArguments completion;
 
   Parser();
   Parser(const Parser&) = delete;
@@ -184,12 +184,12 @@ void Parser::add_scene() {
 }
 
 void Parser::add_config() {
-  using Action = ConfigOptions::Action;
+  using Action = ConfigArguments::Action;
   CLI::App& parent = add(app, "config", kHelpConfig, nullptr);
   parent.require_subcommand(1);
   const auto action = [&](const std::string& name, std::string_view text, Action value) -> CLI::App& {
     CLI::App& sub = add(parent, name, text, [this, value] {
-      ConfigOptions options = config;
+      ConfigArguments options = config;
       options.action = value;
       return Command(options);
     });
@@ -217,7 +217,7 @@ void Parser::add_cache() {
   CLI::App& lister = add(parent, "list", kHelpCacheList, [this] { return Command(cache); });
   add_common(lister, cache.common);
   CLI::App& prune = add(parent, "prune", kHelpCachePrune, [this] {
-    CacheOptions options = cache;
+    CacheArguments options = cache;
     options.prune = true;
     return Command(options);
   });
@@ -233,9 +233,8 @@ void Parser::add_cache() {
 }
 
 void Parser::add_calibration() {
-  const auto add_papers = [](CLI::App& sub, FitOptions& options) {
-    add_repeatable(sub, "--paper", options.papers, "Only the tables of this paper (repeatable)",
-                   "sss|sbaa|axaa|agaa");
+  const auto add_papers = [](CLI::App& sub, FitArguments& options) {
+    add_repeatable(sub, "--paper", options.papers, "Only the tables of this paper (repeatable)", "PAPER");
     sub.add_flag("--dry-run", options.dry_run, "List the rows and the runs that stand for them");
     add_common(sub, options.common);
   };
@@ -248,7 +247,7 @@ void Parser::add_calibration() {
   CLI::App& validator = add(app, "validate", kHelpValidate, [this] { return Command(validate); });
   add_papers(validator, validate);
   CLI::App& reproducer = add(app, "reproduce", kHelpReproduce, [this] { return Command(reproduce); });
-  reproducer.add_option("PAPER", reproduce.paper, "sss, sbaa, axaa, agaa or wire_aa")
+  reproducer.add_option("PAPER", reproduce.paper, "As the published tables call it: sss, sbaa, ...")
       ->required()
       ->type_name(" ");
   reproducer.add_option("--out", reproduce.out, "Folder for pictures (SVG) and the table (CSV)")

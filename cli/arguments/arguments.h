@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/arguments/options.h"
+#include "cli/arguments/command.h"
 
 namespace hwsim::cli {
 

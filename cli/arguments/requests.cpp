@@ -17,7 +17,7 @@ std::vector<Assignment> parse_sets(const std::vector<std::string>& texts, std::v
   return sets;
 }
 
-void apply_flags(const ViewOptions& options, View& view) {
+void apply_flags(const ViewArguments& options, View& view) {
   view.resolution = options.resolution.value_or(view.resolution);
   view.camera = options.camera.value_or(view.camera);
   view.point_lights = options.point_lights.value_or(view.point_lights);
@@ -26,7 +26,7 @@ void apply_flags(const ViewOptions& options, View& view) {
   view.reference_shadows = options.reference_shadows.value_or(view.reference_shadows);
 }
 
-void apply_flags(const RunOptions& options, Request& request) {
+void apply_flags(const RunArguments& options, Request& request) {
   apply_flags(options.view, request.view);
   Settings& settings = request.settings;
   settings.engine = options.engine.value_or(settings.engine);
@@ -38,7 +38,7 @@ void apply_flags(const RunOptions& options, Request& request) {
 }
 
 /// Flags that say how a scene is seen, given with an image.
-void check_image_flags(const RunOptions& options, const View& view, std::vector<Diagnostic>& problems) {
+void check_image_flags(const RunArguments& options, const View& view, std::vector<Diagnostic>& problems) {
   if (!is_image_file(view.scene)) return;
   const auto refuse = [&](bool given, const std::string& what) {
     if (given)
@@ -50,7 +50,7 @@ void check_image_flags(const RunOptions& options, const View& view, std::vector<
   refuse(options.view.point_lights.has_value(), "--point-lights");
 }
 
-Request request_with(const RunOptions& options, std::vector<Diagnostic>& problems) {
+Request request_with(const RunArguments& options, std::vector<Diagnostic>& problems) {
   const std::vector<Assignment> sets = parse_sets(options.view.sets, problems);
   Request request = open_request(options.view.scene);
   apply(request, sets, problems);
@@ -68,14 +68,14 @@ std::vector<Assignment> parse_sets(const std::vector<std::string>& texts) {
   return sets;
 }
 
-Request request_of(const RunOptions& options) {
+Request request_of(const RunArguments& options) {
   std::vector<Diagnostic> problems;
   Request request = request_with(options, problems);
   if (!problems.empty()) throw InputError(problems);
   return request;
 }
 
-RunPlan plan_of(const RunOptions& options, Lab& lab) {
+RunPlan plan_of(const RunArguments& options, Lab& lab) {
   std::vector<Diagnostic> problems;
   const Request request = request_with(options, problems);
   RunPlan plan = lab.plan(request, problems);
@@ -83,7 +83,7 @@ RunPlan plan_of(const RunOptions& options, Lab& lab) {
   return plan;
 }
 
-View view_of(const ViewOptions& options) {
+View view_of(const ViewArguments& options) {
   std::vector<Diagnostic> problems;
   const std::vector<Assignment> sets = parse_sets(options.sets, problems);
   try {

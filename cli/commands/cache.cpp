@@ -24,7 +24,7 @@ Table file_table(const std::vector<CachedFile>& files) {
 
 }  // namespace
 
-ExitStatus cache(const CacheOptions& options, Context& context) {
+ExitStatus cache(const CacheArguments& options, Context& context) {
   const Lab lab(lab_options(options.common, context.log));
   std::vector<CachedFile> files = lab.cache().files();
   if (options.prune && options.keep_mib)

@@ -11,7 +11,7 @@
 namespace hwsim::cli {
 namespace {
 
-Trials trials_of(const CompareOptions& options) {
+Trials trials_of(const CompareArguments& options) {
   Trials trials{.overlays = options.overlays, .sets = parse_sets(options.view.sets)};
   for (const std::string& list : options.what_ifs)
     for (std::string& what_if : split(list, ',')) trials.what_ifs.push_back(std::move(what_if));
@@ -20,8 +20,8 @@ Trials trials_of(const CompareOptions& options) {
   return trials;
 }
 
-Comparison simulate(const CompareOptions& options, Context& context) {
-  RunOptions base = options;
+Comparison simulate(const CompareArguments& options, Context& context) {
+  RunArguments base = options;
   base.view.scene = options.inputs.front();
   base.view.sets.clear();
   base.overlays.clear();
@@ -31,7 +31,7 @@ Comparison simulate(const CompareOptions& options, Context& context) {
 
 }  // namespace
 
-ExitStatus compare(const CompareOptions& options, Context& context) {
+ExitStatus compare(const CompareArguments& options, Context& context) {
   const bool results_given = std::any_of(options.inputs.begin(), options.inputs.end(), is_result);
   if (!results_given && options.inputs.size() > 1)
     fail_usage("U004", "one scene, or the folders of several results, can be compared", "",

@@ -5,7 +5,7 @@
 
 namespace hwsim::cli {
 
-ExitStatus completion(const CompletionOptions& options, Context&) {
+ExitStatus completion(const CompletionArguments& options, Context&) {
   const std::string script = completion_script(options.shell, describe_commands());
   if (script.empty())
     fail_usage("U003", "no completion for `" + options.shell + "`, only for bash, zsh and fish");

@@ -10,7 +10,7 @@ namespace hwsim::cli {
 namespace {
 
 /// Every file is looked at before the first mistake is reported. A file of kind "run" is one too.
-ExitStatus check(const ConfigOptions& options, const ConfigFolder& folder) {
+ExitStatus check(const ConfigArguments& options, const ConfigFolder& folder) {
   std::vector<Diagnostic> problems;
   Table table{{{"file", "file"}, {"id", "id"}, {"state", "state"}}, {}};
   for (const std::string& name : options.names) try {
@@ -37,8 +37,8 @@ std::string schema_of(const std::vector<std::string>& names) {
 
 }  // namespace
 
-ExitStatus config(const ConfigOptions& options, Context& context) {
-  using Action = ConfigOptions::Action;
+ExitStatus config(const ConfigArguments& options, Context& context) {
+  using Action = ConfigArguments::Action;
   const Lab lab(lab_options(options.common, context.log));
   const ConfigFolder& folder = lab.catalog().folder();
   const auto load = [&](size_t i) {

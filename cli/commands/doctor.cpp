@@ -4,7 +4,7 @@
 
 namespace hwsim::cli {
 
-ExitStatus doctor(const DoctorOptions& options, Context& context) {
+ExitStatus doctor(const DoctorArguments& options, Context& context) {
   const std::vector<SelfCheck> checks = Lab(lab_options(options.common, context.log)).check_itself();
   ExitStatus status = ExitStatus::done;
   for (const SelfCheck& check : checks) {

@@ -41,7 +41,7 @@ Table joined(const std::vector<Explanation>& explanations, bool every) {
   table.rows.clear();
   table.columns.insert(table.columns.begin(), {"point", "point"});
   for (const Explanation& explanation : explanations)
-    for (std::vector<Cell>& row : sensitivity_table(explanation, every).rows) {
+    for (std::vector<TableCell>& row : sensitivity_table(explanation, every).rows) {
       row.insert(row.begin(), label_of(explanation));
       table.rows.push_back(std::move(row));
     }
@@ -50,7 +50,7 @@ Table joined(const std::vector<Explanation>& explanations, bool every) {
 
 }  // namespace
 
-ExitStatus explain(const ExplainOptions& options, Context& context) {
+ExitStatus explain(const ExplainArguments& options, Context& context) {
   Lab lab(lab_options(options, context.log));
   const std::vector<Explanation> explanations = lab.explain(plan_of(options, lab));
   std::string heading, footing;

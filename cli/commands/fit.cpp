@@ -44,7 +44,7 @@ std::string heading(const Fit& fit, double wall_s) {
 
 }  // namespace
 
-ExitStatus fit(const FitOptions& options, Context& context) {
+ExitStatus fit(const FitArguments& options, Context& context) {
   Lab lab(lab_options(options.common, context.log));
   if (options.dry_run) {
     print({.table = plan_table(published_cells(options.papers, lab.catalog().folder()))}, options.common);

@@ -16,7 +16,7 @@ bool looks_like_code(const std::string& topic) {
          std::all_of(topic.begin() + 1, topic.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-void print_codes(const HelpOptions& options) {
+void print_codes(const HelpArguments& options) {
   Table table{{{"code", "code"}, {"title", "means"}}, {}};
   for (const ErrorCode& code : error_codes())
     table.rows.push_back({std::string(code.code), std::string(code.title)});
@@ -35,7 +35,7 @@ ExitStatus explain(std::string topic) {
 
 }  // namespace
 
-ExitStatus help(const HelpOptions& options, Context&) {
+ExitStatus help(const HelpArguments& options, Context&) {
   if (options.topic.empty()) {
     print_codes(options);
     return ExitStatus::done;

@@ -7,7 +7,7 @@
 
 namespace hwsim::cli {
 
-ExitStatus list(const ListOptions& options, Context& context) {
+ExitStatus list(const ListArguments& options, Context& context) {
   static const std::map<std::string, Table (Catalog::*)() const> catalogs = {
       {"gpus", &Catalog::gpus},
       {"scenes", &Catalog::scenes},

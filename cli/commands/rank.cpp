@@ -12,8 +12,8 @@
 namespace hwsim::cli {
 namespace {
 
-RunOptions with_defaults(const RankOptions& options) {
-  RunOptions run = options;
+RunArguments with_defaults(const RankArguments& options) {
+  RunArguments run = options;
   if (run.techniques.empty()) run.techniques = rankable_techniques();
   if (!run.reference_samples) run.reference_samples = kDefaultReferenceSamples;
   return run;
@@ -36,7 +36,7 @@ std::string sentence(const Ranking& ranking) {
 
 }  // namespace
 
-ExitStatus rank(const RankOptions& options, Context& context) {
+ExitStatus rank(const RankArguments& options, Context& context) {
   if (!options.budget.empty()) parse_budget(options.budget);  // a mistake in it comes first
   Lab lab(lab_options(options, context.log));
   const RunPlan plan = ranking_plan(plan_of(with_defaults(options), lab));

@@ -11,7 +11,7 @@
 namespace hwsim::cli {
 namespace {
 
-RunPlan reference_plan(const ReferenceOptions& options) {
+RunPlan reference_plan(const ReferenceArguments& options) {
   RunPlan plan;
   plan.view = view_of(options.view);
   plan.reference_samples = options.samples;
@@ -31,7 +31,7 @@ Table answer_table(const std::string& scene, const ReferenceImage& reference, co
 
 }  // namespace
 
-ExitStatus reference(const ReferenceOptions& options, Context& context) {
+ExitStatus reference(const ReferenceArguments& options, Context& context) {
   InterruptGuard guard;
   const RunPlan plan = reference_plan(options);
   context.log.say(fmt::format("plan: reference of {}, {} samples a pixel, {}x{}, {} threads", plan.view.scene,

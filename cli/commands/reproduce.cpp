@@ -19,12 +19,12 @@ std::string figures_text(const Reproduction& reproduction) {
 }
 
 bool is_text(const FormatRequest& request) {
-  return request.format == Format::table || request.format == Format::md;
+  return request.format == OutputFormat::table || request.format == OutputFormat::md;
 }
 
 /// People read fewer columns than programs: each kind of format gets its own table.
-void print_both(const Reproduction& reproduction, const CommonOptions& options) {
-  CommonOptions text = options, data = options;
+void print_both(const Reproduction& reproduction, const CommonArguments& options) {
+  CommonArguments text = options, data = options;
   std::erase_if(text.formats, [](const FormatRequest& f) { return !is_text(f); });
   std::erase_if(data.formats, is_text);
   if (options.formats.empty() || !text.formats.empty())
@@ -35,8 +35,7 @@ void print_both(const Reproduction& reproduction, const CommonOptions& options) 
 
 }  // namespace
 
-ExitStatus reproduce(const ReproduceOptions& options, Context& context) {
-  check_papers({options.paper});
+ExitStatus reproduce(const ReproduceArguments& options, Context& context) {
   Lab lab(lab_options(options.common, context.log));
   if (options.dry_run) {
     print({.table = plan_table(published_cells({options.paper}, lab.catalog().folder()))}, options.common);

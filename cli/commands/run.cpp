@@ -20,7 +20,7 @@ lab::Run simulate(Lab& lab, const RunPlan& plan, RunRecord& record, ShownRun& sh
 
 }  // namespace
 
-ExitStatus run(const RunOptions& options, Context& context) {
+ExitStatus run(const RunArguments& options, Context& context) {
   InterruptGuard guard;
   Lab lab(lab_options(options, context.log));
   const RunPlan plan = plan_of(options, lab);

@@ -23,13 +23,13 @@ Table transposed(const Table& table) {
   return result;
 }
 
-bool wants_lines(const CommonOptions& options) {
-  return options.formats.empty() || options.formats.front().format == Format::table;
+bool wants_lines(const CommonArguments& options) {
+  return options.formats.empty() || options.formats.front().format == OutputFormat::table;
 }
 
 }  // namespace
 
-ExitStatus scene_check(const SceneCheckOptions& options, Context& context) {
+ExitStatus scene_check(const SceneCheckArguments& options, Context& context) {
   const Lab lab(lab_options(options.common, context.log));
   const CheckedScenes scenes = check_scenes(options.scenes, lab.cache().directory(CacheFolder::scenes));
   for (const std::vector<Diagnostic>& notes : scenes.notes)

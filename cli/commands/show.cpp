@@ -22,7 +22,7 @@ namespace {
 
 }  // namespace
 
-ExitStatus show_entry(const ShowOptions& options, Context& context) {
+ExitStatus show_entry(const ShowArguments& options, Context& context) {
   const Lab lab(lab_options(options.common, context.log));
   const ConfigFolder& folder = lab.catalog().folder();
   const std::vector<std::string> gpus = list_gpus(folder.gpus());

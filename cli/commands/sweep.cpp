@@ -13,13 +13,13 @@
 namespace hwsim::cli {
 namespace {
 
-PointSettings settings_of(const SweepOptions& options) {
+PointSettings settings_of(const SweepArguments& options) {
   std::vector<Axis> axes = parse_axes(options.vary);
   if (options.sample) return {std::move(axes), parse_sample(*options.sample), options.seed};
   return {std::move(axes), options.zip ? Combine::zip : Combine::grid};
 }
 
-SweepJob job_of(const SweepOptions& options, const std::vector<std::string>& arguments) {
+SweepJob job_of(const SweepArguments& options, const std::vector<std::string>& arguments) {
   SweepJob job{.database = options.database,
                .resume = options.resume,
                .force = options.out.force,
@@ -32,7 +32,7 @@ SweepJob job_of(const SweepOptions& options, const std::vector<std::string>& arg
 
 }  // namespace
 
-ExitStatus sweep(const SweepOptions& options, Context& context) {
+ExitStatus sweep(const SweepArguments& options, Context& context) {
   const bool has_scene = !options.view.scene.empty();
   const SweepJob job = job_of(options, context.arguments);
   if (!has_scene && options.merge.empty() && !std::filesystem::exists(options.database))

@@ -21,7 +21,7 @@ std::string counts_text(const lab::Validation& validation) {
 
 }  // namespace
 
-ExitStatus validate(const ValidateOptions& options, Context& context) {
+ExitStatus validate(const ValidateArguments& options, Context& context) {
   Lab lab(lab_options(options.common, context.log));
   const ConfigFolder& folder = lab.catalog().folder();
   if (options.dry_run) {

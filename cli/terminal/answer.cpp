@@ -12,33 +12,33 @@
 namespace hwsim::cli {
 namespace {
 
-std::string render_as(const Answer& answer, Format format) {
+std::string render_as(const Answer& answer, OutputFormat format) {
   switch (format) {
-    case Format::table:
+    case OutputFormat::table:
       return answer.heading + to_text(answer.table) + answer.footing;
-    case Format::md:
+    case OutputFormat::md:
       return answer.heading + to_markdown(answer.table) + answer.footing;
-    case Format::csv:
+    case OutputFormat::csv:
       return to_csv(answer.table);
-    case Format::json:
+    case OutputFormat::json:
       break;
   }
   return (answer.json ? *answer.json : to_json(answer.table)).dump(2) + "\n";
 }
 
-std::vector<FormatRequest> requests_of(const CommonOptions& options) {
+std::vector<FormatRequest> requests_of(const CommonArguments& options) {
   return options.formats.empty() ? std::vector<FormatRequest>{FormatRequest{}} : options.formats;
 }
 
-void write_rows(const lab::RowSource& rows, Format format, const lab::TakeText& take) {
+void write_rows(const lab::RowSource& rows, OutputFormat format, const lab::TakeText& take) {
   switch (format) {
-    case Format::table:
+    case OutputFormat::table:
       return write_text(rows, take);
-    case Format::md:
+    case OutputFormat::md:
       return write_markdown(rows, take);
-    case Format::csv:
+    case OutputFormat::csv:
       return write_csv(rows, take);
-    case Format::json:
+    case OutputFormat::json:
       return write_json(rows, take);
   }
 }
@@ -58,7 +58,7 @@ void write_output(std::string_view text) {
   }
 }
 
-void print(const Answer& answer, const CommonOptions& options) {
+void print(const Answer& answer, const CommonArguments& options) {
   for (const FormatRequest& request : requests_of(options)) {
     const std::string text = render_as(answer, request.format);
     if (request.file.empty())
@@ -68,7 +68,7 @@ void print(const Answer& answer, const CommonOptions& options) {
   }
 }
 
-void print_rows(const lab::RowSource& rows, const CommonOptions& options) {
+void print_rows(const lab::RowSource& rows, const CommonArguments& options) {
   constexpr std::size_t kBlock = 1 << 16;
   for (const FormatRequest& request : requests_of(options)) {
     std::string text;

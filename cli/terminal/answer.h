@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "cli/arguments/options.h"
+#include "cli/arguments/command.h"
 #include "lab/base/table.h"
 
 namespace hwsim::cli {
@@ -22,9 +22,9 @@ struct Answer {
 void write_output(std::string_view text);
 
 /// Writes each requested shape, to standard output or to its file. Throws InputError U010.
-void print(const Answer& answer, const CommonOptions& options);
+void print(const Answer& answer, const CommonArguments& options);
 
 /// The same of rows that come one after another. Standard output needs no more memory for more of them.
-void print_rows(const lab::RowSource& rows, const CommonOptions& options);
+void print_rows(const lab::RowSource& rows, const CommonArguments& options);
 
 }  // namespace hwsim::cli

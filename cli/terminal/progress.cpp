@@ -30,7 +30,7 @@ std::string duration_text(double seconds) {
   return whole < 60 ? fmt::format("{} s", whole) : fmt::format("{} min {} s", whole / 60, whole % 60);
 }
 
-Progress::Progress(const CommonOptions& options, const Terminal& terminal)
+Progress::Progress(const CommonArguments& options, const Terminal& terminal)
     : silent_(options.verbosity < 0 || options.progress == When::never), bar_(terminal.bar) {}
 
 Progress::~Progress() { finish(); }

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <string>
 
-#include "cli/arguments/options.h"
+#include "cli/arguments/command.h"
 #include "cli/terminal/terminal.h"
 
 namespace hwsim::cli {
@@ -13,7 +13,7 @@ namespace hwsim::cli {
 /// only. update() may be called from any thread.
 class Progress {
  public:
-  Progress(const CommonOptions& options, const Terminal& terminal);
+  Progress(const CommonArguments& options, const Terminal& terminal);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

@@ -32,7 +32,7 @@ void write_error(const std::string& text) {
 
 }  // namespace
 
-Terminal inspect_terminal(const CommonOptions& options) {
+Terminal inspect_terminal(const CommonArguments& options) {
   Terminal terminal;
   terminal.output_is_terminal = isatty(STDOUT_FILENO) != 0;
   terminal.error_is_terminal = isatty(STDERR_FILENO) != 0;
@@ -43,7 +43,7 @@ Terminal inspect_terminal(const CommonOptions& options) {
   return terminal;
 }
 
-Log::Log(const CommonOptions& options, const Terminal& terminal) : options_(options), terminal_(terminal) {}
+Log::Log(const CommonArguments& options, const Terminal& terminal) : options_(options), terminal_(terminal) {}
 
 void Log::say(const std::string& line) {
   text_ += line + "\n";

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/arguments/options.h"
+#include "cli/arguments/command.h"
 #include "hwsim/base/diagnostics.h"
 #include "lab/base/observer.h"
 
@@ -19,14 +19,14 @@ struct Terminal {
 };
 
 /// NO_COLOR (set, not empty) and TERM=dumb win over `auto`, a flag wins over them.
-Terminal inspect_terminal(const CommonOptions& options);
+Terminal inspect_terminal(const CommonArguments& options);
 
 class Progress;
 
 /// Messages: to standard error as they come, and kept for log.txt.
 class Log : public lab::Observer {
  public:
-  Log(const CommonOptions& options, const Terminal& terminal);
+  Log(const CommonArguments& options, const Terminal& terminal);
   void say(const std::string& line) override;     ///< not with --quiet
   void detail(const std::string& line) override;  ///< with --verbose
   void report(const Diagnostic& diagnostic) override;
@@ -35,7 +35,7 @@ class Log : public lab::Observer {
   const std::string& text() const { return text_; }
 
  private:
-  CommonOptions options_;
+  CommonArguments options_;
   Terminal terminal_;
   std::shared_ptr<Progress> bar_;  ///< while there is progress to show
   std::string text_;

@@ -10,14 +10,14 @@
 namespace hwsim::lab {
 namespace {
 
-std::string text_of(const Cell& cell) {
+std::string text_of(const TableCell& cell) {
   if (const auto* text = std::get_if<std::string>(&cell)) return *text;
   if (const auto* count = std::get_if<std::uint64_t>(&cell)) return std::to_string(*count);
   if (const auto* real = std::get_if<Real>(&cell)) return fmt::format("{:.{}f}", real->value, real->decimals);
   return "n/a";
 }
 
-std::string csv_of(const Cell& cell) {
+std::string csv_of(const TableCell& cell) {
   if (const auto* real = std::get_if<Real>(&cell)) return exact(real->value);
   std::string text = text_of(cell);
   if (text.find_first_of("\",\r\n") == std::string::npos) return text;
@@ -53,7 +53,7 @@ std::vector<std::string> wrap(const std::string& text, size_t columns) {
   return lines;
 }
 
-Cell cell_from_json(const nlohmann::ordered_json& value) {
+TableCell cell_from_json(const nlohmann::ordered_json& value) {
   if (value.is_null()) return NotApplicable{};
   if (value.is_number_unsigned()) return value.get<std::uint64_t>();
   if (value.is_number()) return Real{value.get<double>()};
@@ -74,7 +74,7 @@ void append_row(std::string& out, const std::vector<Column>& columns,
 }
 
 /// The lines of each cell.
-std::vector<std::vector<std::string>> wrapped(const std::vector<Cell>& row,
+std::vector<std::vector<std::string>> wrapped(const std::vector<TableCell>& row,
                                               const std::vector<Column>& columns) {
   std::vector<std::vector<std::string>> cells;
   for (size_t i = 0; i < row.size(); ++i) cells.push_back(wrap(text_of(row[i]), columns[i].wrap_columns));
@@ -85,7 +85,7 @@ std::vector<size_t> widths_of(const RowSource& rows) {
   std::vector<size_t> widths;
   for (const Column& column : rows.columns) widths.push_back(display_columns(column.title));
   if (!rows.each) return widths;
-  rows.each([&](const std::vector<Cell>& row) {
+  rows.each([&](const std::vector<TableCell>& row) {
     const auto cells = wrapped(row, rows.columns);
     for (size_t i = 0; i < cells.size(); ++i)
       for (const std::string& line : cells[i]) widths[i] = std::max(widths[i], display_columns(line));
@@ -98,7 +98,7 @@ std::string escaped_for_markdown(std::string text) {
   return text;
 }
 
-nlohmann::ordered_json to_json(const std::vector<Cell>& row, const std::vector<Column>& columns) {
+nlohmann::ordered_json to_json(const std::vector<TableCell>& row, const std::vector<Column>& columns) {
   nlohmann::ordered_json object = nlohmann::ordered_json::object();
   for (size_t i = 0; i < row.size(); ++i) {
     auto& value = object[columns[i].id];
@@ -135,7 +135,7 @@ RowSource rows_of(Table&& table) {
 
 Table collected(const RowSource& rows) {
   Table table{rows.columns, {}};
-  if (rows.each) rows.each([&](const std::vector<Cell>& row) { table.rows.push_back(row); });
+  if (rows.each) rows.each([&](const std::vector<TableCell>& row) { table.rows.push_back(row); });
   return table;
 }
 
@@ -153,7 +153,7 @@ void write_text(const RowSource& rows, const TakeText& take) {
   };
   line(titles);
   line(rules);
-  if (rows.each) rows.each([&](const std::vector<Cell>& row) { line(wrapped(row, rows.columns)); });
+  if (rows.each) rows.each([&](const std::vector<TableCell>& row) { line(wrapped(row, rows.columns)); });
 }
 
 void write_csv(const RowSource& rows, const TakeText& take) {
@@ -161,7 +161,7 @@ void write_csv(const RowSource& rows, const TakeText& take) {
   for (const Column& column : rows.columns) header += (header.empty() ? "" : ",") + csv_of(column.id);
   take(header + "\r\n");
   if (!rows.each) return;
-  rows.each([&](const std::vector<Cell>& row) {
+  rows.each([&](const std::vector<TableCell>& row) {
     std::string line;
     for (size_t i = 0; i < row.size(); ++i) line += (i ? "," : "") + csv_of(row[i]);
     take(line + "\r\n");
@@ -176,9 +176,9 @@ void write_markdown(const RowSource& rows, const TakeText& take) {
   }
   take(titles + "|\n" + rule + "|\n");
   if (!rows.each) return;
-  rows.each([&](const std::vector<Cell>& row) {
+  rows.each([&](const std::vector<TableCell>& row) {
     std::string line;
-    for (const Cell& cell : row) line += "| " + escaped_for_markdown(text_of(cell)) + " ";
+    for (const TableCell& cell : row) line += "| " + escaped_for_markdown(text_of(cell)) + " ";
     take(line + "|\n");
   });
 }
@@ -186,7 +186,7 @@ void write_markdown(const RowSource& rows, const TakeText& take) {
 void write_json(const RowSource& rows, const TakeText& take) {
   bool first = true;
   if (rows.each)
-    rows.each([&](const std::vector<Cell>& row) {
+    rows.each([&](const std::vector<TableCell>& row) {
       std::string text = to_json(row, rows.columns).dump(2);
       for (size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 3) text.insert(at + 1, "  ");
       take((first ? "[\n  " : ",\n  ") + text);
@@ -210,7 +210,7 @@ Table table_from_json(const nlohmann::ordered_json& json) {
   if (!json.empty())
     for (const auto& [key, value] : json.at(0).items()) table.columns.push_back({key, key});
   for (const nlohmann::ordered_json& object : json) {
-    std::vector<Cell>& row = table.rows.emplace_back();
+    std::vector<TableCell>& row = table.rows.emplace_back();
     for (const Column& column : table.columns) row.push_back(cell_from_json(object.at(column.id)));
   }
   return table;

@@ -16,7 +16,7 @@ struct Real {
   double value = 0.0;
   int decimals = 2;  ///< in text and Markdown; CSV and JSON carry every digit
 };
-using Cell = std::variant<NotApplicable, std::string, std::uint64_t, Real>;
+using TableCell = std::variant<NotApplicable, std::string, std::uint64_t, Real>;
 
 struct Column {
   std::string id;     ///< CSV header and JSON key
@@ -27,10 +27,10 @@ struct Column {
 
 struct Table {
   std::vector<Column> columns;
-  std::vector<std::vector<Cell>> rows;
+  std::vector<std::vector<TableCell>> rows;
 };
 
-using TakeRow = std::function<void(const std::vector<Cell>&)>;
+using TakeRow = std::function<void(const std::vector<TableCell>&)>;
 
 /// A table whose rows come one after another, as often as they are asked for: a million take no memory.
 struct RowSource {

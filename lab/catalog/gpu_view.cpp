@@ -20,10 +20,11 @@ Table key_table(const GpuConfig& gpu, bool with_origin) {
   if (with_origin) table.columns.push_back({"origin", "origin"});
   table.columns.push_back({"description", "meaning", false, 72});
   for (const KeyInfo& key : gpu_keys()) {
-    std::vector<Cell> row = {std::string(key.name), value_of(gpu, key.name)};
+    std::vector<TableCell> row = {std::string(key.name), value_of(gpu, key.name)};
     if (with_origin) {
       const auto origin = gpu.origins.find(key.name);
-      row.push_back(origin == gpu.origins.end() ? Cell{NotApplicable{}} : Cell{origin->second.to_string()});
+      row.push_back(origin == gpu.origins.end() ? TableCell{NotApplicable{}}
+                                                : TableCell{origin->second.to_string()});
     }
     row.push_back(std::string(key.description));
     table.rows.push_back(std::move(row));

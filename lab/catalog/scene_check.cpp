@@ -13,7 +13,7 @@
 namespace hwsim::lab {
 namespace {
 
-std::vector<Cell> scene_row(const pipeline::Scene& scene) {
+std::vector<TableCell> scene_row(const pipeline::Scene& scene) {
   const pipeline::SceneStats s = pipeline::stats(scene);
   const glm::vec3 size = s.bounds_max - s.bounds_min;
   return {scene.name,

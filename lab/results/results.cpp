@@ -157,8 +157,9 @@ Table wide_pass_table(const PointResult& point) {
 
   for (size_t i = 0; i < point.timing.passes.size(); ++i) {
     const PassTiming& pass = point.timing.passes[i];
-    std::vector<Cell> row = {pass.name, std::string(pass_kind_name(pass.kind)), Real{pass.time_ns / kNsPerMs},
-                             std::string(unit_name(pass.limiter)), Real{pass.overhead_ns}};
+    std::vector<TableCell> row = {pass.name, std::string(pass_kind_name(pass.kind)),
+                                  Real{pass.time_ns / kNsPerMs}, std::string(unit_name(pass.limiter)),
+                                  Real{pass.overhead_ns}};
     for (const auto* list : {&pass.busy_ns, &pass.sol_ratio, &pass.stack_ns})
       for (const double value : *list) row.push_back(Real{value});
     for (const auto* list : {&pass.dram_bytes.read, &pass.dram_bytes.write})
@@ -197,16 +198,16 @@ Table summary_table(const std::vector<Result>& results) {
               {}};
   for (const Result& result : results) {
     const FrameResult& frame = result.frame;
-    const auto bound = [&](size_t i) -> Cell {
-      return frame.interval_ms ? Cell{Real{(*frame.interval_ms)[i], 3}} : Cell{NotApplicable{}};
+    const auto bound = [&](size_t i) -> TableCell {
+      return frame.interval_ms ? TableCell{Real{(*frame.interval_ms)[i], 3}} : TableCell{NotApplicable{}};
     };
-    const auto error = [&](double pipeline::ImageError::*member, int decimals) -> Cell {
-      return result.image ? Cell{Real{(*result.image).*member, decimals}} : Cell{NotApplicable{}};
+    const auto error = [&](double pipeline::ImageError::*member, int decimals) -> TableCell {
+      return result.image ? TableCell{Real{(*result.image).*member, decimals}} : TableCell{NotApplicable{}};
     };
     const PassResult* slowest = slowest_pass(result);
     table.rows.push_back(
         {result.technique, result.gpu, Real{frame.time_ms, 3}, bound(0), bound(1), frame.support,
-         slowest ? Cell{slowest->limiter + " in " + slowest->name} : Cell{NotApplicable{}},
+         slowest ? TableCell{slowest->limiter + " in " + slowest->name} : TableCell{NotApplicable{}},
          Real{frame.dram_mb, 1}, Real{frame.memory_mib, 1}, frame.shaded_samples,
          error(&pipeline::ImageError::flip_mean, 4), error(&pipeline::ImageError::psnr_db, 2)});
   }

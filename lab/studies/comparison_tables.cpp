@@ -7,19 +7,19 @@ namespace {
 
 constexpr double kPercent = 100.0;
 
-Cell change_cell(double before, double after) {
+TableCell change_cell(double before, double after) {
   const auto change = relative_change(before, after);
-  return change ? Cell{Real{*change * kPercent, 1}} : Cell{NotApplicable{}};
+  return change ? TableCell{Real{*change * kPercent, 1}} : TableCell{NotApplicable{}};
 }
 
-Cell change_cell(const Change<double>& change) { return change_cell(change.before, change.after); }
+TableCell change_cell(const Change<double>& change) { return change_cell(change.before, change.after); }
 
-Cell limiter_cell(const std::optional<std::string>& limiter) {
-  return limiter ? Cell{*limiter} : Cell{NotApplicable{}};
+TableCell limiter_cell(const std::optional<std::string>& limiter) {
+  return limiter ? TableCell{*limiter} : TableCell{NotApplicable{}};
 }
 
-Cell time_cell(double time_ms, const std::optional<std::string>& limiter) {
-  return limiter ? Cell{Real{time_ms, 4}} : Cell{NotApplicable{}};
+TableCell time_cell(double time_ms, const std::optional<std::string>& limiter) {
+  return limiter ? TableCell{Real{time_ms, 4}} : TableCell{NotApplicable{}};
 }
 
 std::string slowest_limiter(const Result& result) {

@@ -29,7 +29,7 @@ double change_pct(double before, double after) {
   return kPercent * relative_change(before, after).value_or(0.0);
 }
 
-Cell doubled_cell(double frame_ms, const SensitivityResult& s) {
+TableCell doubled_cell(double frame_ms, const SensitivityResult& s) {
   if (!s.doubled_ms) return NotApplicable{};
   return Real{change_pct(frame_ms, *s.doubled_ms), 2};
 }

@@ -43,10 +43,27 @@ class RunTraces {
   std::map<std::string, std::shared_ptr<const WorkTrace>> traces_;
 };
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text == "wireaa" ? "wire_aa" : text;
+/// What a user calls a paper: its name in the tables, however it is written ("WireAA", "wire_aa").
+std::string folded(const std::string& text) {
+  std::string result;
+  for (const char c : text)
+    if (c != '_') result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+bool is_one_of(const std::string& document, const std::vector<std::string>& papers) {
+  return std::ranges::any_of(papers, [&](const std::string& p) { return folded(p) == folded(document); });
+}
+
+/// Papers that have no table among `cells`. Throws InputError U003.
+void check_papers(const std::vector<std::string>& papers, const std::vector<cost_models::Cell>& cells) {
+  std::set<std::string> known;
+  for (const cost_models::Cell& cell : cells) known.insert(folded(cell.row.document));
+  const std::vector<std::string> names(known.begin(), known.end());
+  for (const std::string& paper : papers)
+    if (!known.contains(folded(paper)))
+      fail_usage("U003", fmt::format("no paper is called `{}`, only {}", paper, fmt::join(names, ", ")),
+                 did_you_mean(paper, names));
 }
 
 /// Why a run is impossible whatever the scene; empty when nothing is known against it.
@@ -95,25 +112,15 @@ Request request_of(const RunSpec& run) {
   return request;
 }
 
-bool in_papers(const cost_models::Cell& cell, const std::vector<std::string>& papers) {
-  return papers.empty() || std::find(papers.begin(), papers.end(), lower(cell.row.document)) != papers.end();
-}
-
-void check_papers(const std::vector<std::string>& papers) {
-  const std::vector<std::string> known = {"sss", "sbaa", "axaa", "agaa", "wire_aa"};
-  for (const std::string& paper : papers)
-    if (std::find(known.begin(), known.end(), paper) == known.end())
-      fail_usage("U003", "no paper is called `" + paper + "`, only sss, sbaa, axaa, agaa and wire_aa",
-                 did_you_mean(paper, known));
-}
-
 std::vector<cost_models::Cell> published_cells(const std::vector<std::string>& papers,
                                                const ConfigFolder& folder) {
-  check_papers(papers);
   std::vector<cost_models::Cell> cells =
       cost_models::map_rows(cost_models::load_published(folder.published()), folder.published());
+  check_papers(papers, cells);
   check_settings(cells, folder);
-  std::erase_if(cells, [&](const cost_models::Cell& cell) { return !in_papers(cell, papers); });
+  if (!papers.empty())
+    std::erase_if(cells,
+                  [&](const cost_models::Cell& cell) { return !is_one_of(cell.row.document, papers); });
   return cells;
 }
 

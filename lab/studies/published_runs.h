@@ -13,13 +13,8 @@ namespace hwsim::lab {
 /// What is asked of the lab to have a run's work. Throws InputError for settings that no request takes.
 Request request_of(const cost_models::RunSpec& run);
 
-/// "sss" from `SSS`; every row without a filter.
-bool in_papers(const cost_models::Cell& cell, const std::vector<std::string>& papers);
-
-/// Names of papers that have rows; throws InputError U003 for others.
-void check_papers(const std::vector<std::string>& papers);
-
-/// Rows of the papers (all when empty) with what is done with them, from the published tables of `folder`.
+/// Rows of the papers (all when empty) with what is done with them, from the published tables of `folder`. A
+/// paper is called as its tables call it, in any case. Throws InputError U003 for one that has no table.
 std::vector<cost_models::Cell> published_cells(const std::vector<std::string>& papers,
                                                const ConfigFolder& folder);
 

@@ -55,16 +55,16 @@ Table ranking_table(const Ranking& ranking) {
                {"reason", "reason", false, 48}},
               {}};
   for (const RankedTechnique& t : ranking.techniques) {
-    const auto value = [&](double number, int decimals) -> Cell {
-      return t.runs() ? Cell{Real{number, decimals}} : Cell{NotApplicable{}};
+    const auto value = [&](double number, int decimals) -> TableCell {
+      return t.runs() ? TableCell{Real{number, decimals}} : TableCell{NotApplicable{}};
     };
-    const auto bound = [&](std::size_t i) -> Cell {
-      return t.interval_ms ? Cell{Real{(*t.interval_ms)[i], 3}} : Cell{NotApplicable{}};
+    const auto bound = [&](std::size_t i) -> TableCell {
+      return t.interval_ms ? TableCell{Real{(*t.interval_ms)[i], 3}} : TableCell{NotApplicable{}};
     };
     table.rows.push_back({t.technique, t.verdict, t.pareto ? "yes" : "", value(t.frame_ms, 3), bound(0),
                           bound(1), t.support, value(t.aa_ms, 3), value(t.extra_mib, 1), value(t.dram_mb, 1),
                           value(t.flip_mean, 4), value(t.psnr_db, 2),
-                          t.runs() ? Cell{t.shaded_samples} : Cell{NotApplicable{}}, t.reason});
+                          t.runs() ? TableCell{t.shaded_samples} : TableCell{NotApplicable{}}, t.reason});
   }
   return table;
 }

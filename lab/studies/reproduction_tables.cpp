@@ -49,12 +49,12 @@ constexpr std::array<KnownColumn, 4> kKnown = {{{"predicted", &ReproducedRow::pr
 
 int decimals_of(const std::string& unit) { return unit == "ms" ? 2 : unit == "mib" ? 1 : 0; }
 
-::hwsim::lab::Cell number_cell(const std::optional<double>& value, const std::string& unit) {
+TableCell number_cell(const std::optional<double>& value, const std::string& unit) {
   if (!value) return NotApplicable{};
   return Real{*value, decimals_of(unit)};
 }
 
-::hwsim::lab::Cell error_cell(const ReproducedRow& row) {
+TableCell error_cell(const ReproducedRow& row) {
   if (!row.predicted || row.cell.published <= 0.0) return NotApplicable{};
   return Real{(*row.predicted / row.cell.published - 1.0) * 100.0, 1};
 }
@@ -65,7 +65,7 @@ RowUse use_from_name(const std::string& name) {
   return RowUse::claim;
 }
 
-std::vector<::hwsim::lab::Cell> short_row(const ReproducedRow& row) {
+std::vector<TableCell> short_row(const ReproducedRow& row) {
   const cost_models::Cell& cell = row.cell;
   const PublishedRow& r = cell.row;
   return {r.id(),

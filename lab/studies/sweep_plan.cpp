@@ -24,7 +24,7 @@ bool changes_work(const Assignment& set) {
   return set.path.starts_with("gpu.features.") || set.path.starts_with("gpu.functional.");
 }
 
-std::string key_of(const std::vector<Assignment>& settings) {
+std::string work_key(const std::vector<Assignment>& settings) {
   std::string key;
   for (const Assignment& set : settings)
     if (!is_of_gpu(set)) key += set.path + "=" + set.value + ";";
@@ -107,7 +107,7 @@ void SweepPlan::check(const std::vector<Assignment>& settings) {
 }
 
 const SweepPlan::Group& SweepPlan::group_of(const std::vector<Assignment>& settings) const {
-  const std::string key = key_of(settings);
+  const std::string key = work_key(settings);
   if (const auto found = groups_.find(key); found != groups_.end()) return found->second;
   Group group = make_group(settings);
   if (groups_.size() >= kMaxGroups) groups_.clear();
@@ -187,8 +187,8 @@ RowSource planned_rows(const SweepPlan& plan) {
   rows.each = [&plan](const TakeRow& take) {
     for (std::size_t i = 0; i < plan.size(); ++i) {
       const PlannedPoint p = plan[i];
-      std::vector<Cell> row{static_cast<std::uint64_t>(p.number), p.id, technique_text(*p.technique),
-                            p.gpu.id};
+      std::vector<TableCell> row{static_cast<std::uint64_t>(p.number), p.id, technique_text(*p.technique),
+                                 p.gpu.id};
       for (const Assignment& set : p.settings) row.emplace_back(set.value);
       take(row);
     }

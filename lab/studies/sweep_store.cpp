@@ -218,8 +218,8 @@ constexpr const char* kSelectPoints =
 constexpr int kSettings = 17;                 ///< column of the statement above
 constexpr std::ptrdiff_t kSettingsPlace = 7;  ///< where they stand in the table
 
-std::vector<Cell> point_row(const Database::Statement& point) {
-  std::vector<Cell> row;
+std::vector<TableCell> point_row(const Database::Statement& point) {
+  std::vector<TableCell> row;
   const auto count = [&](int column) {
     if (point.real(column))
       row.emplace_back(static_cast<std::uint64_t>(point.integer(column)));
@@ -283,12 +283,13 @@ RowSource SweepStore::points() {
     Database::Statement select(database_, kSelectPoints);
     while (select.step()) {
       const nlohmann::ordered_json settings = settings_of(select, path_);
-      std::vector<Cell> cells;
+      std::vector<TableCell> cells;
       for (const std::string& key : varied) {
         const auto found = settings.find(key);
-        cells.push_back(found == settings.end() ? Cell{NotApplicable{}} : Cell{found->get<std::string>()});
+        cells.push_back(found == settings.end() ? TableCell{NotApplicable{}}
+                                                : TableCell{found->get<std::string>()});
       }
-      std::vector<Cell> row = point_row(select);
+      std::vector<TableCell> row = point_row(select);
       row.insert(row.begin() + kSettingsPlace, cells.begin(), cells.end());
       take(row);
     }

@@ -8,13 +8,13 @@
 namespace hwsim::lab {
 namespace {
 
-std::vector<Cell> errors_row(const std::string& name, const Errors& e, bool intervals) {
+std::vector<TableCell> errors_row(const std::string& name, const Errors& e, bool intervals) {
   return {name,
           std::uint64_t{e.cells},
           Real{e.mape_pct, 1},
           Real{e.median_ape_pct, 1},
           Real{e.kendall, 2},
-          intervals ? Cell{Real{e.coverage90_pct, 0}} : Cell{NotApplicable{}},
+          intervals ? TableCell{Real{e.coverage90_pct, 0}} : TableCell{NotApplicable{}},
           e.worst ? fmt::format("{:.0f} % {}", e.worst->ape_pct, e.worst->cell) : std::string()};
 }
 

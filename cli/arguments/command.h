@@ -13,16 +13,16 @@ namespace hwsim::cli {
 using namespace lab;  // the program is the lab's front
 
 enum class When { automatic, always, never };
-enum class Format { table, csv, json, md };
+enum class OutputFormat { table, csv, json, md };
 
 /// `--format csv` (standard output) or `--format csv=passes.csv`.
 struct FormatRequest {
-  Format format = Format::table;
+  OutputFormat format = OutputFormat::table;
   std::string file;  ///< empty: standard output
 };
 
 /// Flags of every command.
-struct CommonOptions {
+struct CommonArguments {
   std::vector<FormatRequest> formats;  ///< empty: a table on standard output
   int verbosity = 0;                   ///< -1 quiet, 1 verbose
   When color = When::automatic;
@@ -31,7 +31,7 @@ struct CommonOptions {
 };
 
 /// What is drawn, before any technique.
-struct ViewOptions {
+struct ViewArguments {
   std::string scene;
   std::optional<Resolution> resolution;
   std::optional<std::string> camera;  ///< a name or an index
@@ -42,9 +42,9 @@ struct ViewOptions {
   std::vector<std::string> sets;  ///< "path=value"
 };
 
-struct RunOptions {
-  CommonOptions common;
-  ViewOptions view;
+struct RunArguments {
+  CommonArguments common;
+  ViewArguments view;
   OutPlace out;
   std::vector<std::string> techniques, gpus, overlays;
   std::optional<std::string> engine;
@@ -54,7 +54,7 @@ struct RunOptions {
 };
 
 /// One scene's results side by side, or results of earlier runs.
-struct CompareOptions : RunOptions {
+struct CompareArguments : RunArguments {
   std::vector<std::string> inputs;  ///< a scene, or folders of results
   std::vector<std::string> what_ifs, vary;
   bool zip = false;
@@ -62,17 +62,17 @@ struct CompareOptions : RunOptions {
 };
 
 /// Why a frame takes its time.
-struct ExplainOptions : RunOptions {
+struct ExplainArguments : RunArguments {
   bool all = false;  ///< parameters without influence too
 };
 
 /// Techniques under a budget.
-struct RankOptions : RunOptions {
+struct RankArguments : RunArguments {
   std::string budget;  ///< "aa_ms<=1.5, extra_mib<=192"
 };
 
 /// Many points in a database.
-struct SweepOptions : RunOptions {
+struct SweepArguments : RunArguments {
   std::vector<std::string> vary;
   bool zip = false;
   std::optional<std::string> sample;  ///< "lhs:64"
@@ -84,50 +84,50 @@ struct SweepOptions : RunOptions {
   std::vector<std::string> merge;
 };
 
-struct ReferenceOptions {
-  CommonOptions common;
-  ViewOptions view;
+struct ReferenceArguments {
+  CommonArguments common;
+  ViewArguments view;
   OutPlace out;
   int samples = 64;
 };
 
-struct ListOptions {
-  CommonOptions common;
+struct ListArguments {
+  CommonArguments common;
   std::string what;
 };
 
-struct ShowOptions {
-  CommonOptions common;
+struct ShowArguments {
+  CommonArguments common;
   std::string name;
   bool origin = false;
   std::vector<std::string> overlays, sets;
 };
 
-struct SceneCheckOptions {
-  CommonOptions common;
+struct SceneCheckArguments {
+  CommonArguments common;
   std::vector<std::string> scenes;
 };
 
-struct ConfigOptions {
+struct ConfigArguments {
   enum class Action { check, show, schema, diff };
-  CommonOptions common;
+  CommonArguments common;
   Action action = Action::check;
   std::vector<std::string> names;
   bool origin = false;
   std::vector<std::string> overlays, sets;
 };
 
-struct DoctorOptions {
-  CommonOptions common;
+struct DoctorArguments {
+  CommonArguments common;
 };
 
-struct HelpOptions {
-  CommonOptions common;
+struct HelpArguments {
+  CommonArguments common;
   std::string topic;
 };
 
-struct CacheOptions {
-  CommonOptions common;
+struct CacheArguments {
+  CommonArguments common;
   bool prune = false;
   bool all = false;
   int older_than_days = 30;
@@ -137,24 +137,24 @@ struct CacheOptions {
 };
 
 /// `fit` and `validate`.
-struct FitOptions {
-  CommonOptions common;
+struct FitArguments {
+  CommonArguments common;
   OutPlace out;                     ///< fit: the folder of calibrated GPUs
   std::vector<std::string> papers;  ///< empty: all
   int starts = 10;
   bool dry_run = false;
 };
-struct ValidateOptions : FitOptions {};
+struct ValidateArguments : FitArguments {};
 
-struct ReproduceOptions {
-  CommonOptions common;
+struct ReproduceArguments {
+  CommonArguments common;
   std::string paper;
   std::string out;  ///< folder for the pictures; empty: none
   bool dry_run = false;
 };
 
-struct CompletionOptions {
-  CommonOptions common;
+struct CompletionArguments {
+  CommonArguments common;
   std::string shell;
 };
 
@@ -164,8 +164,9 @@ struct PrintText {
 };
 
 using Command =
-    std::variant<PrintText, RunOptions, ExplainOptions, RankOptions, CompareOptions, SweepOptions,
-                 ReferenceOptions, ListOptions, ShowOptions, SceneCheckOptions, ConfigOptions, DoctorOptions,
-                 HelpOptions, CacheOptions, FitOptions, ValidateOptions, ReproduceOptions, CompletionOptions>;
+    std::variant<PrintText, RunArguments, ExplainArguments, RankArguments, CompareArguments, SweepArguments,
+                 ReferenceArguments, ListArguments, ShowArguments, SceneCheckArguments, ConfigArguments,
+                 DoctorArguments, HelpArguments, CacheArguments, FitArguments, ValidateArguments,
+                 ReproduceArguments, CompletionArguments>;
 
 }  // namespace hwsim::cli
