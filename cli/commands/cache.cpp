@@ -7,6 +7,7 @@
 #include "cli/terminal/answer.h"
 #include "lab/base/messages.h"
 #include "lab/base/table.h"
+#include "lab/results/folder_exchange.h"
 
 namespace hwsim::cli {
 namespace {
@@ -26,6 +27,9 @@ Table file_table(const std::vector<CachedFile>& files) {
 
 ExitStatus cache(const CacheArguments& options, Context& context) {
   const Lab lab(lab_options(options.common, context.log));
+  if (options.prune && !options.dry_run)
+    if (const std::size_t abandoned = lab.cache().remove_abandoned() + clear_abandoned("runs"); abandoned > 0)
+      context.log.say(fmt::format("{} unfinished files and folders of killed runs removed", abandoned));
   std::vector<CachedFile> files = lab.cache().files();
   if (options.prune && options.keep_mib)
     files = least_recently_used(std::move(files), std::uint64_t{*options.keep_mib} << 20);

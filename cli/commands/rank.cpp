@@ -6,6 +6,7 @@
 #include "cli/terminal/answer.h"
 #include "cli/terminal/interrupt.h"
 #include "lab/base/files.h"
+#include "lab/base/json_text.h"
 #include "lab/results/run_record.h"
 #include "pipeline/image/image_io.h"
 
@@ -52,7 +53,7 @@ ExitStatus rank(const RankArguments& options, Context& context) {
   const nlohmann::ordered_json json = to_json(ranking);
   if (plan.images) pipeline::write_image(sheet, record.path("contact_sheet.png"));
   write_file(record.path("ranking.csv"), to_csv(table));
-  write_file(record.path("ranking.json"), json.dump(2) + "\n");
+  write_file(record.path("ranking.json"), json_text(json));
   const std::string place = record.commit(context.log.text());
   guard.keep();
   print({.table = table, .heading = sentence(ranking), .footing = {}, .json = &json}, options.common);

@@ -6,6 +6,7 @@
 #include "cli/terminal/interrupt.h"
 #include "cli/terminal/run_view.h"
 #include "lab/base/files.h"
+#include "lab/base/json_text.h"
 
 namespace hwsim::cli {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 lab::Run simulate(Lab& lab, const RunPlan& plan, RunRecord& record, ShownRun& shown) try {
   return lab.run(plan, &shown);
 } catch (const InternalError&) {
-  std::fprintf(stderr, "%s\n", record.manifest("failed").dump(2).c_str());
+  std::fprintf(stderr, "%s", json_text(record.manifest("failed")).c_str());
   throw;
 }
 

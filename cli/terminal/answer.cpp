@@ -6,7 +6,9 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "hwsim/base/printable.h"
 #include "lab/base/files.h"
+#include "lab/base/json_text.h"
 #include "lab/base/messages.h"
 
 namespace hwsim::cli {
@@ -15,15 +17,15 @@ namespace {
 std::string render_as(const Answer& answer, OutputFormat format) {
   switch (format) {
     case OutputFormat::table:
-      return answer.heading + to_text(answer.table) + answer.footing;
+      return printable(answer.heading) + to_text(answer.table) + printable(answer.footing);
     case OutputFormat::md:
-      return answer.heading + to_markdown(answer.table) + answer.footing;
+      return printable(answer.heading) + to_markdown(answer.table) + printable(answer.footing);
     case OutputFormat::csv:
       return to_csv(answer.table);
     case OutputFormat::json:
       break;
   }
-  return (answer.json ? *answer.json : to_json(answer.table)).dump(2) + "\n";
+  return json_text(answer.json ? *answer.json : to_json(answer.table));
 }
 
 std::vector<FormatRequest> requests_of(const CommonArguments& options) {

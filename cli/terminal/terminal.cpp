@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "hwsim/base/printable.h"
 #include "cli/terminal/progress.h"
 
 namespace hwsim::cli {
@@ -47,12 +48,12 @@ Log::Log(const CommonArguments& options, const Terminal& terminal) : options_(op
 
 void Log::say(const std::string& line) {
   text_ += line + "\n";
-  if (options_.verbosity >= 0) write_error(line + "\n");
+  if (options_.verbosity >= 0) write_error(printable(line) + "\n");
 }
 
 void Log::detail(const std::string& line) {
   text_ += line + "\n";
-  if (options_.verbosity > 0) write_error(line + "\n");
+  if (options_.verbosity > 0) write_error(printable(line) + "\n");
 }
 
 void Log::report(const Diagnostic& diagnostic) {

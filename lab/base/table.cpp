@@ -3,23 +3,42 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+
+#include "hwsim/base/printable.h"
+#include "lab/base/json_text.h"
 
 namespace hwsim::lab {
 namespace {
 
 std::string text_of(const TableCell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+  if (const auto* text = std::get_if<std::string>(&cell)) return printable_line(*text);
   if (const auto* count = std::get_if<std::uint64_t>(&cell)) return std::to_string(*count);
   if (const auto* real = std::get_if<Real>(&cell)) return fmt::format("{:.{}f}", real->value, real->decimals);
   return "n/a";
 }
 
+bool is_number(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+/// Spreadsheets run a cell that begins like a formula; behind an apostrophe it is text to them
+/// (https://owasp.org/www-community/attacks/CSV_Injection).
+std::string as_text_for_spreadsheets(std::string text) {
+  const bool is_formula =
+      !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos;
+  return is_formula && !is_number(text) ? "'" + text : text;
+}
+
 std::string csv_of(const TableCell& cell) {
   if (const auto* real = std::get_if<Real>(&cell)) return exact(real->value);
-  std::string text = text_of(cell);
+  const auto* own = std::get_if<std::string>(&cell);
+  const std::string text = own ? as_text_for_spreadsheets(printable(*own)) : text_of(cell);
   if (text.find_first_of("\",\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -187,7 +206,8 @@ void write_json(const RowSource& rows, const TakeText& take) {
   bool first = true;
   if (rows.each)
     rows.each([&](const std::vector<TableCell>& row) {
-      std::string text = to_json(row, rows.columns).dump(2);
+      std::string text = json_text(to_json(row, rows.columns));
+      text.pop_back();  // its line end
       for (size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 3) text.insert(at + 1, "  ");
       take((first ? "[\n  " : ",\n  ") + text);
       first = false;

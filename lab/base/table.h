@@ -41,7 +41,7 @@ RowSource rows_of(const Table& table);  ///< valid as long as the table
 RowSource rows_of(Table&& table);       ///< keeps the table
 Table collected(const RowSource& rows);
 
-/// Takes the text piece by piece.
+/// Takes the text piece by piece. Names from files are made safe for terminals.
 using TakeText = std::function<void(std::string_view)>;
 void write_text(const RowSource& rows, const TakeText& take);  ///< asks for the rows twice
 void write_csv(const RowSource& rows, const TakeText& take);
@@ -49,7 +49,8 @@ void write_markdown(const RowSource& rows, const TakeText& take);
 void write_json(const RowSource& rows, const TakeText& take);  ///< as to_json(), indented by two
 
 std::string to_text(const Table& table);
-std::string to_csv(const Table& table);  ///< RFC 4180: one header line, CRLF
+/// RFC 4180: one header line, CRLF. A text that a spreadsheet would run begins with an apostrophe.
+std::string to_csv(const Table& table);
 std::string to_markdown(const Table& table);
 nlohmann::ordered_json to_json(const Table& table);  ///< an array of objects
 

@@ -17,7 +17,7 @@ const ReferenceImage& Session::reference(SceneView& scene, int samples, const Pr
   for (const auto& kept : references_)
     if (kept->scene == &scene && kept->samples == samples) return kept->image;
   references_.push_back(std::make_unique<KeptReference>(
-      KeptReference{&scene, samples, make_reference(scene, samples, jobs_, cache_, progress)}));
+      KeptReference{&scene, samples, make_reference(scene, samples, {cache_, observer_, jobs_, progress})}));
   return references_.back()->image;
 }
 

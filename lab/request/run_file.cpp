@@ -9,6 +9,7 @@
 #include "hwsim/base/file_name.h"
 #include "hwsim/config/assign.h"
 #include "hwsim/config/toml_file.h"
+#include "lab/base/json_text.h"
 #include "lab/base/messages.h"
 #include "lab/request/image_input.h"
 
@@ -143,7 +144,7 @@ std::string run_schema_json() {
                                          {"required", {"schema", "kind", "scene"}},
                                          {"properties", properties},
                                          {"additionalProperties", false}};
-  return schema.dump(2) + "\n";
+  return json_text(schema);
 }
 
 }  // namespace hwsim::lab

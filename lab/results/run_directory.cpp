@@ -1,5 +1,6 @@
 #include "lab/results/run_directory.h"
 
+#include <fcntl.h>
 #include <fmt/chrono.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 
 #include "lab/base/files.h"
 #include "lab/base/messages.h"
+#include "lab/results/folder_exchange.h"
 
 namespace hwsim::lab {
 namespace {
@@ -48,31 +50,38 @@ RunDirectory::RunDirectory(const OutPlace& place, const std::string& id_source)
     : replace_(place.force), named_by_us_(place.directory.empty()) {
   final_ = named_by_us_ ? default_place(id_source) : fs::path(place.directory);
   if (!final_.has_filename()) final_ = final_.parent_path();  // "results/"
+  clear_abandoned(final_.parent_path());
   check_free(final_, place.force);
-  partial_ = final_.parent_path() / fmt::format(".{}.partial-{}", final_.filename().string(), getpid());
+  partial_ = partial_name(final_);
   std::error_code error;
   if (final_.has_parent_path()) made_parent_ = fs::create_directories(final_.parent_path(), error);
   if (!error) fs::create_directory(partial_, error);
   if (error) fail_to_write(final_, error);
+  lock_ = pipeline::FileDescriptor(::open(partial_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (lock_.is_open()) lock_.lock();  // file systems without locks: the next run leaves the folder alone
+  write_file(path(kUnfinishedMark), "");
 }
 
 RunDirectory::~RunDirectory() {
   std::error_code ignored;  // nothing more can be done for a folder that cannot be removed
   if (committed_) return;
-  fs::remove_all(partial_, ignored);
+  remove_results(partial_);
   if (made_parent_) fs::remove(final_.parent_path(), ignored);  // only when empty
 }
 
 void RunDirectory::commit() {
-  std::error_code error;
   check_free(final_, replace_);  // somebody may have been faster
-  const fs::path old = final_.parent_path() / fmt::format(".{}.old-{}", final_.filename().string(), getpid());
+  std::error_code error;
   const bool replaces = replace_ && fs::exists(final_, error);
-  if (replaces) fs::rename(final_, old, error);
-  if (!error) fs::rename(partial_, final_, error);
+  if (!error) fs::remove(partial_ / kUnfinishedMark, error);
+  if (error) fail_to_write(final_, error);
+  if (replaces)
+    error = exchange_folders(partial_, final_);
+  else
+    fs::rename(partial_, final_, error);
   if (error) fail_to_write(final_, error);
   committed_ = true;
-  if (replaces) fs::remove_all(old, error);
+  if (replaces) remove_results(partial_);  // the old ones; where it fails, the next run tries again
   if (named_by_us_) point_latest_here();
 }
 

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <string>
 
+#include "pipeline/base/file_descriptor.h"
+
 namespace hwsim::lab {
 
 /// Where results go.
@@ -12,7 +14,8 @@ struct OutPlace {
 };
 
 /// A folder that appears only when all that belongs in it is there: written beside its place as
-/// ".<name>.partial-<pid>" and renamed by commit(). Removed when it is not committed, on Ctrl-C too.
+/// ".<name>.partial-<pid>" and put in its place by commit(), in one step also where earlier results are
+/// replaced. Removed when it is not committed, on Ctrl-C too; what a killed run left is removed by the next.
 class RunDirectory {
  public:
   /// Throws InputError U013 when the place is taken (unless place.force and it holds results of hwsim) and
@@ -31,6 +34,7 @@ class RunDirectory {
   void point_latest_here() const;
 
   std::filesystem::path final_, partial_;
+  pipeline::FileDescriptor lock_;  ///< says that a process works on `partial_`
   bool replace_ = false, named_by_us_ = false, made_parent_ = false, committed_ = false;
 };
 

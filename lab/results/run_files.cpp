@@ -9,6 +9,7 @@
 
 #include "lab/base/build_info.h"
 #include "lab/base/files.h"
+#include "lab/base/json_text.h"
 #include "lab/request/run_file.h"
 #include "pipeline/image/image_io.h"
 
@@ -58,7 +59,7 @@ pipeline::Image heat_picture(const pipeline::Image& values, float full_scale) {
 void write_point_files(const std::string& folder, const PointResult& point, const RunPlan& plan,
                        const std::string& scene_name, const ReferenceImage* reference) {
   std::filesystem::create_directories(folder);
-  write_file(folder + "/result.json", to_json(make_result(point, plan, scene_name)).dump(2) + "\n");
+  write_file(folder + "/result.json", json_text(to_json(make_result(point, plan, scene_name))));
   write_file(folder + "/passes.csv", to_csv(wide_pass_table(point)));
   write_file(folder + "/counters.csv", to_csv(counter_table(point)));
   write_file(folder + "/trace.json", trace_event_json(point));
@@ -81,7 +82,7 @@ Json manifest(const ManifestInput& input) {
   Json json;
   json["schema_version"] = kResultSchemaVersion;
   json["version"] = build.version;
-  json["model_version"] = kModelVersion;
+  json["model_version"] = model_version();
   json["commit"] = build.commit;
   json["compiler"] = build.compiler;
   json["build_type"] = build.build_type;
@@ -133,7 +134,7 @@ std::string manifest_schema_json() {
       {"properties",
        {{"schema_version", {{"const", kResultSchemaVersion}}},
         {"request", {{"type", "object"}, {"required", {"view", "settings"}}, {"properties", request}}}}}};
-  return schema.dump(2) + "\n";
+  return json_text(schema);
 }
 
 }  // namespace hwsim::lab

@@ -1,6 +1,7 @@
 #include "lab/results/run_record.h"
 
 #include "lab/base/files.h"
+#include "lab/base/json_text.h"
 
 namespace hwsim::lab {
 
@@ -34,7 +35,7 @@ nlohmann::ordered_json RunRecord::manifest(const std::string& state) const {
 }
 
 std::string RunRecord::commit(const std::string& log) {
-  write_file(directory_.path("manifest.json"), manifest("done").dump(2) + "\n");
+  write_file(directory_.path("manifest.json"), json_text(manifest("done")));
   write_file(directory_.path("log.txt"), log);
   directory_.commit();
   return directory_.final_place().string();

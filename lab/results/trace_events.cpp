@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "lab/base/json_text.h"
 #include "lab/results/results.h"
 
 namespace hwsim::lab {
@@ -67,7 +68,7 @@ std::string trace_event_json(const PointResult& point) {
   }
   events.push_back(counter("dram read GB/s", start_ns, 0.0));
   events.push_back(counter("dram write GB/s", start_ns, 0.0));
-  return Json{{"displayTimeUnit", "ns"}, {"traceEvents", std::move(events)}}.dump() + "\n";
+  return json_text(Json{{"displayTimeUnit", "ns"}, {"traceEvents", std::move(events)}}, -1) + "\n";
 }
 
 }  // namespace hwsim::lab

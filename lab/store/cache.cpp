@@ -6,17 +6,16 @@
 #include <chrono>
 #include <cstdlib>
 
+#include "hwsim/base/byte_codec.h"
 #include "hwsim/base/content_hash.h"
 #include "lab/base/messages.h"
-#include "lab/base/table.h"
-#include "pipeline/base/file_io.h"
 
 namespace hwsim::lab {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxEntryBytes = std::size_t{8} << 30;  // a 16384x16384 image and its heat map
+constexpr pipeline::SealKind kSeconds = {"seconds", "one real number"};
 
 std::string folder_name(CacheFolder folder) {
   switch (folder) {
@@ -74,18 +73,20 @@ void Cache::keep_traces_below_limit() const {
   }
 }
 
-std::optional<std::vector<std::uint8_t>> read_cached(const std::string& path) try {
-  return pipeline::read_file(path, "U011", kMaxEntryBytes);
-} catch (const InputError&) {
-  return std::nullopt;
+std::optional<std::vector<std::uint8_t>> Cache::read(const std::string& path, const pipeline::SealKind& kind,
+                                                     Observer& observer) const {
+  pipeline::SealedContent content = pipeline::read_sealed(path, kind);
+  if (!content.damage.empty()) note_damage(observer, path, content.damage);
+  return std::move(content.bytes);
 }
 
-void Cache::write(const std::string& path, std::span<const std::uint8_t> bytes, Observer& observer) const
-    try {
-  std::error_code error;  // the write says what is wrong
-  fs::create_directories(fs::path(path).parent_path(), error);
-  pipeline::write_file_atomically(path, "U010", bytes);
-  if (fs::path(path).parent_path() == directory(CacheFolder::traces)) keep_traces_below_limit();
+void Cache::write(const std::string& path, const pipeline::SealKind& kind,
+                  std::span<const std::uint8_t> payload, Observer& observer) const try {
+  const std::string folder = fs::path(path).parent_path().string();
+  if (const std::string fault = pipeline::make_private_folder(folder); !fault.empty())
+    fail("K002", "the folder `" + folder + "` cannot be used: " + fault);
+  pipeline::write_sealed(path, kind, "K002", payload);
+  if (folder == directory(CacheFolder::traces)) keep_traces_below_limit();
 } catch (const InputError& failure) {
   Diagnostic note = problem("K002", "the cache cannot be written: " + std::string(failure.what()), "",
                             "set HWSIM_CACHE to a folder that can be written");
@@ -117,6 +118,15 @@ std::vector<CachedFile> Cache::files() const {
   return files;
 }
 
+std::size_t Cache::remove_abandoned() const {
+  std::size_t removed = 0;
+  for (const CachedFile& file : files())
+    if (pipeline::is_unfinished_name(file.path.filename().string()) &&
+        pipeline::remove_if_abandoned(file.path.string()))
+      ++removed;
+  return removed;
+}
+
 std::vector<CachedFile> least_recently_used(std::vector<CachedFile> files, std::uint64_t limit_bytes) {
   std::sort(files.begin(), files.end(),
             [](const CachedFile& a, const CachedFile& b) { return a.age_days < b.age_days; });
@@ -130,18 +140,19 @@ std::vector<CachedFile> least_recently_used(std::vector<CachedFile> files, std::
 }
 
 std::optional<double> Cache::remembered_seconds(const std::string& key) const try {
-  const std::string text = read_file(duration_file(key));
-  const double seconds = std::strtod(text.c_str(), nullptr);
+  const auto bytes = pipeline::read_sealed(duration_file(key), kSeconds).bytes;
+  if (!bytes) return std::nullopt;
+  const double seconds = ByteReader(*bytes).real();
   return seconds > 0.0 && seconds < 1e9 ? std::optional(seconds) : std::nullopt;
-} catch (const InputError&) {
+} catch (const DamagedBytes&) {
   return std::nullopt;
 }
 
-void Cache::remember_seconds(const std::string& key, double seconds) const try {
-  std::error_code error;
-  fs::create_directories(directory(CacheFolder::durations), error);
-  write_file(duration_file(key), exact(seconds) + "\n");
-} catch (const InputError&) {  // the estimate is missing the next time, nothing else
+void Cache::remember_seconds(const std::string& key, double seconds) const {
+  ByteWriter out;
+  out.real(seconds);
+  Observer silent;
+  write(duration_file(key), kSeconds, out.take(), silent);
 }
 
 }  // namespace hwsim::lab

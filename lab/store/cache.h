@@ -11,6 +11,7 @@
 
 #include "lab/base/files.h"
 #include "lab/base/lab_options.h"
+#include "pipeline/base/sealed_file.h"
 
 namespace hwsim::lab {
 
@@ -35,15 +36,25 @@ class Cache {
   /// The file for a key: its name is a hash of the key.
   std::string path(CacheFolder kind, const std::string& key, const std::string& ending) const;
 
-  /// Whole or not at all. A cache that cannot be written is no error: a note says that the next run will work
-  /// again. What was used least recently goes when the traces take more than the limit.
-  void write(const std::string& path, std::span<const std::uint8_t> bytes, Observer& observer) const;
+  /// What a file holds, of this kind and version. None where there is no such file; one that is damaged or
+  /// another user's is noted, and as good as not there.
+  std::optional<std::vector<std::uint8_t>> read(const std::string& path, const pipeline::SealKind& kind,
+                                                Observer& observer) const;
+
+  /// Sealed, whole or not at all, in a folder that is this user's alone. A cache that cannot be written is no
+  /// error: a note says that the next run will work again. What was used least recently goes when the traces
+  /// take more than the limit.
+  void write(const std::string& path, const pipeline::SealKind& kind, std::span<const std::uint8_t> payload,
+             Observer& observer) const;
 
   /// Only what hwsim itself writes, sorted by path; whatever else lies in the folder is not ours.
   std::vector<CachedFile> files() const;
 
+  /// Removes what writers that are gone did not finish. Returns how many files.
+  std::size_t remove_abandoned() const;
+
   /// How long the same work took the last time. A cache that cannot be written or holds something else is no
-  /// error.
+  /// error, and not worth a note: an estimate is missing, nothing else.
   std::optional<double> remembered_seconds(const std::string& key) const;
   void remember_seconds(const std::string& key, double seconds) const;
 
@@ -56,9 +67,6 @@ class Cache {
   std::string folder_;
   std::uint64_t limit_bytes_;
 };
-
-/// None when there is no such file, or it cannot be read.
-std::optional<std::vector<std::uint8_t>> read_cached(const std::string& path);
 
 /// The file was used now: it goes last.
 void mark_used(const std::string& path);

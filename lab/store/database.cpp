@@ -125,6 +125,10 @@ std::string Database::Statement::text(int column) const {
 std::int64_t Database::Statement::integer(int column) const {
   return sqlite3_column_int64(handle_.get(), column);
 }
+bool Database::Statement::is_number(int column) const {
+  const int type = sqlite3_column_type(handle_.get(), column);
+  return type == SQLITE_INTEGER || type == SQLITE_FLOAT;
+}
 std::optional<double> Database::Statement::real(int column) const {
   if (sqlite3_column_type(handle_.get(), column) == SQLITE_NULL) return std::nullopt;
   return sqlite3_column_double(handle_.get(), column);

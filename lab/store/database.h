@@ -38,6 +38,7 @@ class Database {
     std::string text(int column) const;
     std::int64_t integer(int column) const;
     std::optional<double> real(int column) const;  ///< none: NULL
+    bool is_number(int column) const;              ///< before text(), which may change the stored type
 
    private:
     Database& database_;

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <filesystem>
+#include <optional>
 
 #include "algos/base/reference_frame.h"
 #include "algos/source_digest.h"
-#include "lab/base/files.h"
-#include "pipeline/image/image_io.h"
+#include "lab/store/image_codec.h"
 
 namespace hwsim::lab {
 namespace {
@@ -19,30 +18,55 @@ std::string reference_key(const SceneView& scene, int samples) {
                      scene.camera(), key_text(scene.plan(), kReference), samples);
 }
 
+pipeline::SealKind reference_kind() { return {"truth", algos::reference_digest()}; }
+
+/// None where there is none, or another one: two keys with one hash are told apart.
+std::optional<pipeline::Image> on_disk(const std::string& path, const std::string& key, const Cache& cache,
+                                       Observer& observer) {
+  const auto bytes = cache.read(path, reference_kind(), observer);
+  if (!bytes) return std::nullopt;
+  try {
+    ByteReader in(*bytes);
+    if (in.text() != key) throw DamagedBytes("it belongs to another view");
+    pipeline::Image image = decode_image(in);
+    in.expect_end();
+    return image;
+  } catch (const DamagedBytes& damage) {
+    note_damage(observer, path, damage.what());
+    return std::nullopt;
+  }
+}
+
+pipeline::Image trace_rays(SceneView& scene, int samples, int jobs, const ProgressFunction& progress) {
+  algos::ReferenceFrameOptions options;
+  options.samples = samples;
+  options.jobs = jobs;
+  options.shadows =
+      scene.plan().reference_shadows == "rays" ? algos::ReferenceShadows::rays : algos::ReferenceShadows::map;
+  options.progress = [&progress](double share) { progress(share, "reference"); };
+  return algos::render_reference_frame(scene.frame_request(), options);
+}
+
 }  // namespace
 
-ReferenceImage make_reference(SceneView& scene, int samples, int jobs, const Cache& cache,
-                              const ProgressFunction& progress) {
+ReferenceImage make_reference(SceneView& scene, int samples, const ReferenceContext& context) {
   const auto start = std::chrono::steady_clock::now();
-  const std::filesystem::path folder = cache.directory(CacheFolder::references);
-  const std::string path = (folder / (hash_hex(reference_key(scene, samples)) + ".exr")).string();
-  std::error_code error;
+  const std::string key = reference_key(scene, samples);
+  const std::string path = context.cache.path(CacheFolder::references, key, ".truth");
   ReferenceImage result;
   result.samples = samples;
-  result.from_cache = std::filesystem::exists(path, error);
-  if (!result.from_cache) {
-    const algos::FrameRequest request = scene.frame_request();
-    algos::ReferenceFrameOptions options;
-    options.samples = samples;
-    options.jobs = jobs;
-    options.shadows = scene.plan().reference_shadows == "rays" ? algos::ReferenceShadows::rays
-                                                               : algos::ReferenceShadows::map;
-    options.progress = [&progress](double share) { progress(share, "reference"); };
-    std::filesystem::create_directories(folder, error);
-    pipeline::write_image(algos::render_reference_frame(request, options), path);
+  std::optional<pipeline::Image> kept = on_disk(path, key, context.cache, context.observer);
+  result.from_cache = kept.has_value();
+  if (kept) {
+    result.image = std::move(*kept);
+    mark_used(path);
+  } else {
+    result.image = trace_rays(scene, samples, context.jobs, context.progress);
+    ByteWriter out;
+    out.text(key);
+    encode_image(out, result.image);
+    context.cache.write(path, reference_kind(), out.take(), context.observer);
   }
-  // Read back even when it is new: the file has half floats, and every run must compare with the same image.
-  result.image = pipeline::read_image(path);
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -12,8 +12,15 @@ struct ReferenceImage {
   bool from_cache = false;
 };
 
-/// Ray-traces the view, or takes it from the cache.
-ReferenceImage make_reference(SceneView& scene, int samples, int jobs, const Cache& cache,
-                              const ProgressFunction& progress);
+/// With what a reference is made.
+struct ReferenceContext {
+  const Cache& cache;
+  Observer& observer;
+  int jobs = 1;
+  const ProgressFunction& progress;
+};
+
+/// Takes the view's reference from the cache, or traces its rays and keeps it there.
+ReferenceImage make_reference(SceneView& scene, int samples, const ReferenceContext& context);
 
 }  // namespace hwsim::lab

@@ -21,8 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kKind = "scene";
-constexpr std::uint64_t kVersion = 2;
 constexpr std::int64_t kNsPerS = 1'000'000'000;
 constexpr std::int64_t kSettledNs = kNsPerS / 10;  // far more than the tick of any file system's clock
 
@@ -97,12 +95,12 @@ std::vector<std::uint8_t> encode(const SceneSummary& summary, const std::vector<
          {surface.blended, surface.emissive, surface.colored_emission, surface.unlit, surface.occluded})
       out.count(trait ? 1 : 0);
   }
-  return seal(kKind, kVersion, out.take());
+  return out.take();
 }
 
 /// Nothing when a file has changed since.
 std::optional<SceneSummary> decode(std::span<const std::uint8_t> bytes) {
-  ByteReader in(open_seal(kKind, kVersion, bytes));
+  ByteReader in(bytes);
   for (std::size_t files = in.elements(); files > 0; --files) {
     FileStamp stamp{in.text()};
     for (std::int64_t* number : {&stamp.bytes, &stamp.changed_ns, &stamp.written_ns, &stamp.inode})
@@ -158,8 +156,11 @@ int find_camera(const SceneSummary& scene, const std::string& text) {
        fmt::format("cameras: index 0 to {}; names: {}", count - 1, fmt::join(scene.cameras, ", ")));
 }
 
-std::optional<SceneSummary> remembered_summary(const std::string& path, Observer& observer) {
-  const auto bytes = read_cached(path);
+pipeline::SealKind summary_kind() { return {"summary", algos::source_digest()}; }
+
+std::optional<SceneSummary> remembered_summary(const std::string& path, const Cache& cache,
+                                               Observer& observer) {
+  const auto bytes = cache.read(path, summary_kind(), observer);
   if (!bytes) return std::nullopt;
   try {
     return decode(*bytes);
@@ -178,7 +179,7 @@ SceneView::SceneView(View plan, const Cache& cache, Observer& observer)
     return;
   }
   const std::string path = summary_path(plan_, cache);
-  if (auto known = remembered_summary(path, observer)) {
+  if (auto known = remembered_summary(path, cache, observer)) {
     summary_ = std::move(*known);
   } else {
     const std::int64_t start_ns = now_ns();
@@ -189,7 +190,7 @@ SceneView::SceneView(View plan, const Cache& cache, Observer& observer)
       stamps.push_back(stamp_of(file));
       settled = settled && stamps.back().changed_ns < start_ns - kSettledNs;
     }
-    if (settled) cache.write(path, encode(summary_, stamps), observer);
+    if (settled) cache.write(path, summary_kind(), encode(summary_, stamps), observer);
   }
   camera_ = find_camera(summary_, plan_.camera);
   for (const Diagnostic& note : summary_.notes) observer.report(note);

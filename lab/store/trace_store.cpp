@@ -1,4 +1,5 @@
 #include "lab/store/trace_store.h"
+#include "lab/store/image_codec.h"
 
 #include <fmt/format.h>
 
@@ -17,10 +18,7 @@ namespace {
 using pipeline::Emulation;
 using pipeline::Image;
 
-constexpr std::string_view kFrameKind = "frame", kImageKind = "image";
-constexpr std::uint64_t kFrameVersion = 1, kImageVersion = 1;
 constexpr std::size_t kKeptFrames = 4;  // 30 MB each at 1280x720
-constexpr std::size_t kChannels = 4;
 
 std::vector<std::uint8_t> encode_frame(const std::string& key, const Emulation& emulation) {
   ByteWriter out;
@@ -31,12 +29,11 @@ std::vector<std::uint8_t> encode_frame(const std::string& key, const Emulation& 
     out.count(count);
   }
   out.raw(encode_trace(emulation.trace));
-  return seal(kFrameKind, kFrameVersion, out.take());
+  return out.take();
 }
 
 void decode_frame(std::span<const std::uint8_t> bytes, const std::string& key, Emulation& emulation) {
-  const auto payload = open_seal(kFrameKind, kFrameVersion, bytes);
-  ByteReader in(payload);
+  ByteReader in(bytes);
   if (in.text() != key) throw DamagedBytes("it belongs to other work");
   for (std::size_t i = in.elements(); i > 0; --i) {
     std::string name = in.text();
@@ -47,58 +44,28 @@ void decode_frame(std::span<const std::uint8_t> bytes, const std::string& key, E
   emulation.trace = std::move(*decoded.trace);
 }
 
-/// Channel by channel; one that is the same everywhere (alpha, unused ones of the heat map) takes one value.
-void write_image(ByteWriter& out, const Image& image) {
-  out.count(static_cast<std::uint64_t>(image.width));
-  out.count(static_cast<std::uint64_t>(image.height));
-  std::vector<float> plane(image.pixels.size());
-  for (glm::length_t c = 0; c < static_cast<glm::length_t>(kChannels); ++c) {
-    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = image.pixels[i][c];
-    const bool constant = std::all_of(plane.begin(), plane.end(), [&](const float& value) {
-      return std::memcmp(&value, plane.data(), sizeof value) == 0;
-    });
-    out.count(constant ? 1 : 0);
-    const std::size_t stored = constant ? std::min<std::size_t>(1, plane.size()) : plane.size();
-    out.raw({reinterpret_cast<const std::uint8_t*>(plane.data()), stored * sizeof(float)});
-  }
-}
-
-Image read_image(ByteReader& in) {
-  const std::uint64_t width = in.count(), height = in.count();
-  constexpr std::uint64_t kMaxSide = 1 << 16;
-  if (width > kMaxSide || height > kMaxSide) throw DamagedBytes("an image is too large");
-  Image image(static_cast<int>(width), static_cast<int>(height));
-  const std::size_t pixels = image.pixels.size();
-  std::vector<float> plane(pixels);
-  for (glm::length_t c = 0; c < static_cast<glm::length_t>(kChannels); ++c) {
-    const bool constant = in.count() != 0;
-    const std::size_t stored = constant ? std::min<std::size_t>(1, pixels) : pixels;
-    const auto bytes = in.raw(stored * sizeof(float));
-    std::memcpy(plane.data(), bytes.data(), bytes.size());
-    for (std::size_t i = 0; i < pixels; ++i) image.pixels[i][c] = plane[constant ? 0 : i];
-  }
-  return image;
-}
-
 std::vector<std::uint8_t> encode_images(const std::string& key, const Emulation& emulation) {
   ByteWriter out;
   out.text(key);
-  write_image(out, emulation.color);
-  write_image(out, emulation.shading_heat);
-  return seal(kImageKind, kImageVersion, out.take());
+  encode_image(out, emulation.color);
+  encode_image(out, emulation.shading_heat);
+  return out.take();
 }
 
 void decode_images(std::span<const std::uint8_t> bytes, const std::string& key, Emulation& emulation) {
-  ByteReader in(open_seal(kImageKind, kImageVersion, bytes));
+  ByteReader in(bytes);
   if (in.text() != key) throw DamagedBytes("it belongs to other work");
-  emulation.color = read_image(in);
-  emulation.shading_heat = read_image(in);
+  emulation.color = decode_image(in);
+  emulation.shading_heat = decode_image(in);
   in.expect_end();
 }
 
-std::string key_of(const std::string& work) {
+std::string trace_key(const std::string& work) {
   return fmt::format("{}|{:016x}|{}", algos::source_digest(), trace_version(), work);
 }
+
+pipeline::SealKind frame_kind() { return {"frame", algos::source_digest()}; }
+pipeline::SealKind image_kind() { return {"image", algos::source_digest()}; }
 
 }  // namespace
 
@@ -119,17 +86,19 @@ std::string TraceStore::work_text(const SceneView& scene, const algos::Technique
 EmulatedFrame TraceStore::frame(SceneView& scene, const algos::TechniqueChoice& technique,
                                 const GpuConfig& gpu, const FrameNeeds& needs,
                                 const ProgressFunction& progress) {
-  std::string key = key_of(work_text(scene, technique, gpu, needs));
+  std::string key = trace_key(work_text(scene, technique, gpu, needs));
   EmulatedFrame result{in_memory(key, needs.image), true, true};
   if (result.emulation) return result;
   result.in_memory = false;
   if (options_.disk) result.emulation = on_disk(key, scene, needs.image);
   if (!result.emulation) {
     result = {emulate(scene, technique, gpu, needs, progress), false, false};
-    key = key_of(work_text(scene, technique, gpu, needs));  // the file may have changed before it was loaded
-    if (options_.disk) cache_.write(frame_path(key), encode_frame(key, *result.emulation), observer_);
+    key =
+        trace_key(work_text(scene, technique, gpu, needs));  // the file may have changed before it was loaded
+    if (options_.disk)
+      cache_.write(frame_path(key), frame_kind(), encode_frame(key, *result.emulation), observer_);
     if (options_.disk && needs.image)
-      cache_.write(image_path(key), encode_images(key, *result.emulation), observer_);
+      cache_.write(image_path(key), image_kind(), encode_images(key, *result.emulation), observer_);
   }
   keep(key, result.emulation);
   return result;
@@ -137,7 +106,7 @@ EmulatedFrame TraceStore::frame(SceneView& scene, const algos::TechniqueChoice& 
 
 bool TraceStore::holds(const SceneView& scene, const algos::TechniqueChoice& technique, const GpuConfig& gpu,
                        const FrameNeeds& needs) const {
-  return in_memory(key_of(work_text(scene, technique, gpu, needs)), needs.image) != nullptr;
+  return in_memory(trace_key(work_text(scene, technique, gpu, needs)), needs.image) != nullptr;
 }
 
 std::shared_ptr<const Emulation> TraceStore::in_memory(const std::string& key, bool image) const {
@@ -153,9 +122,10 @@ std::shared_ptr<const Emulation> TraceStore::on_disk(const std::string& key, con
   std::vector<std::string> paths = {frame_path(key)};
   if (image) paths.push_back(image_path(key));
   for (const std::string& path : paths) try {
-      const auto bytes = read_cached(path);
+      const bool is_frame = path == paths.front();
+      const auto bytes = cache_.read(path, is_frame ? frame_kind() : image_kind(), observer_);
       if (!bytes) return nullptr;
-      path == paths.front() ? decode_frame(*bytes, key, *emulation) : decode_images(*bytes, key, *emulation);
+      is_frame ? decode_frame(*bytes, key, *emulation) : decode_images(*bytes, key, *emulation);
     } catch (const DamagedBytes& damage) {
       note_damage(observer_, path, damage.what());
       return nullptr;

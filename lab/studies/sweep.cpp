@@ -93,7 +93,6 @@ class SweepRunner {
 void run_points(const SweepPlan& plan, const SweepJob& job, SweepStore& store, Session& session) {
   store.remember("command_line", job.command_line);
   store.remember("version", std::string(build_info().version));
-  store.remember("model_version", std::to_string(kModelVersion));
   store.add(plan.size(), [&plan](std::size_t i) { return plan.row(i); });
   StageProgress progress(session.observer(), plan.size());
   SweepRunner runner(store, session);

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "lab/base/messages.h"
+#include "pipeline/base/file_io.h"
 
 namespace hwsim::lab {
 namespace {
@@ -76,17 +77,19 @@ void write_schema(Database& database) {
 /// Appears under its name with all of its tables, or not at all; a file that another process made meanwhile
 /// stays.
 void make(const std::string& path) {
-  const std::string unfinished = path + ".tmp." + std::to_string(::getpid());
-  std::error_code ignored;
-  fs::remove(unfinished, ignored);  // a killed process with the same number may have left it
+  std::string unfinished;
+  const pipeline::FileDescriptor lock = pipeline::open_unfinished(path, unfinished);
+  if (!lock.is_open()) refuse("the database `" + path + "` cannot be made: " + std::strerror(errno));
   {
-    Database database(unfinished, Database::Mode::create);
+    Database database(unfinished, Database::Mode::write);
+    database.execute("PRAGMA journal_mode=MEMORY");  // no journal that a killed process could leave
     Database::Transaction transaction(database);
     write_schema(database);
     transaction.commit();
   }
   const bool linked = ::link(unfinished.c_str(), path.c_str()) == 0;
   const std::string why = linked ? "" : std::strerror(errno);
+  std::error_code ignored;
   fs::remove(unfinished, ignored);
   if (!linked) refuse("the database `" + path + "` cannot be made: " + why);
 }

@@ -60,7 +60,7 @@ class Problems {
 };
 
 std::string point_id(const std::string& work, const GpuConfig& gpu, const RunPlan& plan) {
-  const std::string text = fmt::format("model {}|{}|{}|{} {}", kModelVersion, work, content_hash(gpu),
+  const std::string text = fmt::format("model {}|{}|{}|{} {}", model_version(), work, content_hash(gpu),
                                        engine_name(plan.engine), plan.timing.detailed_sample_ratio);
   ContentHash hash;
   hash.add({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});

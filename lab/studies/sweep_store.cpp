@@ -8,7 +8,10 @@
 
 #include "algos/rooms.h"
 #include "hwsim/base/units_of_measure.h"
+#include "lab/base/build_info.h"
+#include "lab/base/json_text.h"
 #include "lab/base/messages.h"
+#include "lab/studies/sweep_rows.h"
 
 namespace hwsim::lab {
 namespace {
@@ -16,15 +19,33 @@ namespace {
 std::string settings_json(const std::vector<Assignment>& settings) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (const Assignment& set : settings) json[set.path] = set.value;
-  return json.dump();
+  return json_text(json, -1);
 }
 
 std::int64_t signed_count(std::uint64_t count) { return static_cast<std::int64_t>(count); }
 
+/// The program that computed the points; empty where none was computed yet.
+std::string model_of(Database& database) {
+  Database::Statement select(database, "SELECT value FROM sweep WHERE key = 'model_version'");
+  return select.step() ? select.text(0) : "";
+}
+
+/// Times of two programs in one table would be compared as if one had made them.
+void require_model(const std::string& found, std::string_view wanted, const std::string& path) {
+  if (!found.empty() && found != wanted)
+    fail("U021",
+         fmt::format("`{}` holds points of another build of hwsim (model {}, not {})", path, found, wanted),
+         "", "another --db, --force to compute all points anew, or that build to go on with it");
+}
+
 }  // namespace
 
 SweepStore::SweepStore(const std::string& path, SweepAccess access)
-    : path_(path), writes_(access != SweepAccess::look), database_(open_sweep(path, access)) {}
+    : path_(path), writes_(access != SweepAccess::look), database_(open_sweep(path, access)) {
+  if (!writes_) return;
+  require_model(model_of(database_), model_version(), path_);
+  remember("model_version", std::string(model_version()));
+}
 
 SweepStore::~SweepStore() {
   // One file, with nothing beside it, can be copied and read anywhere. Where another process still uses the
@@ -160,6 +181,8 @@ class RowCopier {
 
 std::size_t SweepStore::merge(const std::string& path) {
   Database other = open_sweep(path, SweepAccess::look);
+  require_model(model_of(other), model_version(), path);
+  require_valid_rows(other, path);
   std::size_t taken = 0;
   Database::Transaction transaction(database_);
   RowCopier points(other, database_, "point",
@@ -190,112 +213,7 @@ std::map<std::string, std::size_t> SweepStore::states() {
   return counts;
 }
 
-namespace {
-
-std::vector<Column> point_columns() {
-  return {{"number", "#", true},
-          {"point_id", "point"},
-          {"scene", "scene"},
-          {"technique", "technique"},
-          {"gpu", "GPU"},
-          {"width_px", "width", true},
-          {"height_px", "height", true},
-          {"state", "state"},
-          {"time_ms", "ms", true},
-          {"lo_ms", "lo", true},
-          {"hi_ms", "hi", true},
-          {"support", "support"},
-          {"limiter", "limiter"},
-          {"dram_mb", "DRAM MB", true},
-          {"memory_mib", "memory MiB", true},
-          {"shaded_samples", "shaded samples", true},
-          {"message", "message"}};
-}
-
-constexpr const char* kSelectPoints =
-    "SELECT number, id, scene, technique, gpu, width_px, height_px, state, time_ms, lo_ms, hi_ms, support, "
-    "limiter, dram_mb, memory_mib, shaded_samples, message, settings FROM point ORDER BY number, id";
-constexpr int kSettings = 17;                 ///< column of the statement above
-constexpr std::ptrdiff_t kSettingsPlace = 7;  ///< where they stand in the table
-
-std::vector<TableCell> point_row(const Database::Statement& point) {
-  std::vector<TableCell> row;
-  const auto count = [&](int column) {
-    if (point.real(column))
-      row.emplace_back(static_cast<std::uint64_t>(point.integer(column)));
-    else
-      row.emplace_back(NotApplicable{});
-  };
-  const auto text = [&](int column) {
-    const std::string value = point.text(column);
-    if (value.empty())
-      row.emplace_back(NotApplicable{});
-    else
-      row.emplace_back(value);
-  };
-  const auto real = [&](int column, int decimals) {
-    if (const auto value = point.real(column))
-      row.emplace_back(Real{*value, decimals});
-    else
-      row.emplace_back(NotApplicable{});
-  };
-  count(0);
-  for (const int column : {1, 2, 3, 4}) text(column);
-  for (const int column : {5, 6}) count(column);
-  text(7);
-  for (const int column : {8, 9, 10}) real(column, 4);
-  for (const int column : {11, 12}) text(column);
-  real(13, 2);
-  real(14, 1);
-  count(15);
-  text(16);
-  return row;
-}
-
-nlohmann::ordered_json settings_of(const Database::Statement& point, const std::string& path) {
-  auto settings = nlohmann::ordered_json::parse(point.text(kSettings), nullptr, false);
-  if (!settings.is_object())
-    hwsim::lab::fail("U021", "`" + path + "` is damaged: the settings of a point are no object");
-  return settings;
-}
-
-/// Everything that is varied at some point, in order of appearance.
-std::vector<std::string> varied_paths(Database& database, const std::string& path) {
-  std::vector<std::string> varied;
-  Database::Statement select(database, kSelectPoints);
-  while (select.step()) {
-    const nlohmann::ordered_json settings = settings_of(select, path);
-    for (const auto& [key, value] : settings.items())
-      if (std::ranges::find(varied, key) == varied.end()) varied.push_back(key);
-  }
-  return varied;
-}
-
-}  // namespace
-
-RowSource SweepStore::points() {
-  const std::vector<std::string> varied = varied_paths(database_, path_);
-  RowSource rows{point_columns(), {}};
-  for (std::size_t k = 0; k < varied.size(); ++k)
-    rows.columns.insert(rows.columns.begin() + kSettingsPlace + static_cast<std::ptrdiff_t>(k),
-                        {varied[k], varied[k], true});
-  rows.each = [this, varied](const TakeRow& take) {
-    Database::Statement select(database_, kSelectPoints);
-    while (select.step()) {
-      const nlohmann::ordered_json settings = settings_of(select, path_);
-      std::vector<TableCell> cells;
-      for (const std::string& key : varied) {
-        const auto found = settings.find(key);
-        cells.push_back(found == settings.end() ? TableCell{NotApplicable{}}
-                                                : TableCell{found->get<std::string>()});
-      }
-      std::vector<TableCell> row = point_row(select);
-      row.insert(row.begin() + kSettingsPlace, cells.begin(), cells.end());
-      take(row);
-    }
-  };
-  return rows;
-}
+RowSource SweepStore::points() { return point_rows(database_, path_); }
 
 RowSource sweep_rows(const std::string& path) {
   const auto store = std::make_shared<SweepStore>(path, SweepAccess::look);

@@ -30,7 +30,8 @@ struct FinishedPoint {
 
 class SweepStore {
  public:
-  /// Throws what `open_sweep` throws.
+  /// Throws what `open_sweep` throws, and U021 where another build of hwsim wrote the points and more are to
+  /// be added.
   SweepStore(const std::string& path, SweepAccess access);
   ~SweepStore();
   SweepStore(const SweepStore&) = delete;
@@ -47,7 +48,7 @@ class SweepStore {
   void fail(const std::string& id, const std::string& message);
 
   /// Takes over the finished points of another sweep's database, which is only read. Returns how many were
-  /// new.
+  /// new. Throws InputError U021 where another build of hwsim wrote them.
   std::size_t merge(const std::string& path);
 
   /// Every point, in order: CSV, and what follows from it. Valid as long as the store.

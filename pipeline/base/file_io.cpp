@@ -10,7 +10,6 @@
 #include <string>
 
 #include "hwsim/base/diagnostics.h"
-#include "pipeline/base/file_descriptor.h"
 
 namespace hwsim::pipeline {
 namespace {
@@ -44,21 +43,6 @@ bool write_all(int descriptor, const std::vector<ByteSpan>& pieces) {
   return true;
 }
 
-/// A new file, locked. The first free name is taken, so that the next writer of the same target finds what a
-/// killed one left.
-FileDescriptor open_unfinished(const std::string& target, std::string& path) {
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    path = target + std::string(kUnfinished) + std::to_string(attempt);
-    remove_if_abandoned(path);
-    FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (!file.is_open() && errno != EEXIST) break;
-    struct stat status {};  // between the calls another process may take the file for abandoned
-    if (file.is_open() && file.lock() && ::fstat(file.get(), &status) == 0 && status.st_nlink > 0)
-      return file;
-  }
-  return FileDescriptor();
-}
-
 using Place = int (*)(const char* from, const char* to);
 
 void write_file(const std::string& path, const std::string& code, const std::vector<ByteSpan>& pieces,
@@ -82,6 +66,19 @@ int link_and_unlink(const char* from, const char* to) {
 }
 
 }  // namespace
+
+FileDescriptor open_unfinished(const std::string& target, std::string& path) {
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    path = target + std::string(kUnfinished) + std::to_string(attempt);
+    remove_if_abandoned(path);
+    FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (!file.is_open() && errno != EEXIST) break;
+    struct stat status {};  // between the calls another process may take the file for abandoned
+    if (file.is_open() && file.lock() && ::fstat(file.get(), &status) == 0 && status.st_nlink > 0)
+      return file;
+  }
+  return FileDescriptor();
+}
 
 std::vector<std::uint8_t> read_file(const std::string& path, const std::string& code, std::size_t max_bytes) {
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/base/file_descriptor.h"
+
 namespace hwsim::pipeline {
 
 using ByteSpan = std::span<const std::uint8_t>;
@@ -24,6 +26,10 @@ void write_file_atomically(const std::string& path, const std::string& code,
 
 /// The same, but a file that exists stays, and is an error.
 void write_new_file(const std::string& path, const std::string& code, ByteSpan bytes);
+
+/// A new file beside `target`, locked; `path` is its name. The first free name is taken, so that the next
+/// writer of the same target finds what a killed one left. Not open, with errno set, where none can be made.
+FileDescriptor open_unfinished(const std::string& target, std::string& path);
 
 /// Whether a file of this name is one that the functions above rename when it is complete. Its writer holds a
 /// lock on it.

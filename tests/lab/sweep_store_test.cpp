@@ -201,5 +201,60 @@ TEST_F(SweepStoreTest, PointThatAKilledProcessLeftRunningIsStillToBeDone) {
   EXPECT_EQ(summary.left, 2u);
 }
 
+TEST_F(SweepStoreTest, RowsThatNoSweepWritesAreRefusedWithTheirPlace) {
+  const std::vector<std::string> damages = {
+      "UPDATE point SET time_ms = 9e999",  "UPDATE point SET time_ms = -5.0",
+      "UPDATE point SET time_ms = 'soon'", "UPDATE point SET time_ms = NULL",
+      "UPDATE point SET width_px = -7",    "UPDATE point SET width_px = 1e9",
+      "UPDATE point SET height_px = 'x'",  "UPDATE point SET shaded_samples = 0.5",
+      "UPDATE point SET dram_mb = -1.0",   "UPDATE point SET state = 'perhaps'",
+      "UPDATE point SET settings = '[1]'", "UPDATE point SET settings = '{\"gpu.rops\": 7}'",
+      "UPDATE point SET settings = x'ff'",
+  };
+  for (const std::string& damage : damages) {
+    make("a.db", {{"p1", 1e6}});
+    Database(path("a.db"), Database::Mode::write).execute(damage);
+    EXPECT_EQ(code_of([&] { collected(sweep_rows(path("a.db"))); }), "U021") << damage;
+    make("b.db", {{"p2", 1e6}});
+    EXPECT_EQ(code_of([&] { SweepStore(path("b.db"), SweepAccess::go_on).merge(path("a.db")); }), "U021")
+        << damage;
+    EXPECT_EQ(collected(sweep_rows(path("b.db"))).rows.size(), 1u) << "something was merged: " << damage;
+    fs::remove(path("a.db"));
+    fs::remove(path("b.db"));
+  }
+}
+
+TEST_F(SweepStoreTest, PassThatNoSweepWritesIsNotMerged) {
+  make("a.db", {{"p1", 1e6}});
+  make("b.db", {});
+  Database(path("a.db"), Database::Mode::write).execute("UPDATE pass SET time_ms = -1.0");
+  EXPECT_EQ(code_of([&] { SweepStore(path("b.db"), SweepAccess::go_on).merge(path("a.db")); }), "U021");
+}
+
+TEST_F(SweepStoreTest, BytesThatAreNoTextDoNotReachJson) {
+  make("a.db", {{"p1", 1e6}});
+  Database(path("a.db"), Database::Mode::write)
+      .execute("UPDATE point SET message = CAST(x'1b5b324aff' AS TEXT)");
+  std::string text, json;
+  write_text(sweep_rows(path("a.db")), [&](std::string_view piece) { text += piece; });
+  write_json(sweep_rows(path("a.db")), [&](std::string_view piece) { json += piece; });
+  EXPECT_NE(text.find("\\x1b[2J\\xff"), std::string::npos) << text;
+  EXPECT_EQ((text + json).find('\x1b'), std::string::npos);
+  EXPECT_EQ(json.find('\xff'), std::string::npos);
+}
+
+TEST_F(SweepStoreTest, PointsOfAnotherBuildAreReadAndNotMixed) {
+  make("a.db", {{"p1", 1e6}});
+  make("b.db", {{"p2", 1e6}});
+  Database(path("a.db"), Database::Mode::write)
+      .execute("UPDATE sweep SET value = '0123' WHERE key = 'model_version'");
+  EXPECT_EQ(collected(sweep_rows(path("a.db"))).rows.size(), 1u);
+  EXPECT_EQ(code_of([&] { SweepStore(path("a.db"), SweepAccess::go_on); }), "U021");
+  EXPECT_EQ(code_of([&] { SweepStore(path("b.db"), SweepAccess::go_on).merge(path("a.db")); }), "U021");
+  EXPECT_EQ(SweepStore(path("a.db"), SweepAccess::replace).states()["done"], 0u);
+  EXPECT_EQ(SweepStore(path("b.db"), SweepAccess::go_on).merge(path("a.db")), 0u)
+      << "it is of this build now";
+}
+
 }  // namespace
 }  // namespace hwsim::lab
