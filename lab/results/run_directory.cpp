@@ -10,6 +10,7 @@
 #include "lab/base/files.h"
 #include "lab/base/messages.h"
 #include "lab/results/folder_exchange.h"
+#include "pipeline/base/file_descriptor.h"
 
 namespace hwsim::lab {
 namespace {
@@ -57,8 +58,9 @@ RunDirectory::RunDirectory(const OutPlace& place, const std::string& id_source)
   if (final_.has_parent_path()) made_parent_ = fs::create_directories(final_.parent_path(), error);
   if (!error) fs::create_directory(partial_, error);
   if (error) fail_to_write(final_, error);
-  lock_ = pipeline::FileDescriptor(::open(partial_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (lock_.is_open()) lock_.lock();  // file systems without locks: the next run leaves the folder alone
+  lock_ = std::make_unique<const pipeline::FileDescriptor>(
+      ::open(partial_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (lock_->is_open()) lock_->lock();  // file systems without locks: the next run leaves the folder alone
   write_file(path(kUnfinishedMark), "");
 }
 

@@ -1,9 +1,12 @@
 #pragma once
 // The folder of a run: complete, or not there.
 #include <filesystem>
+#include <memory>
 #include <string>
 
-#include "pipeline/base/file_descriptor.h"
+namespace hwsim::pipeline {
+class FileDescriptor;
+}
 
 namespace hwsim::lab {
 
@@ -34,7 +37,7 @@ class RunDirectory {
   void point_latest_here() const;
 
   std::filesystem::path final_, partial_;
-  pipeline::FileDescriptor lock_;  ///< says that a process works on `partial_`
+  std::unique_ptr<const pipeline::FileDescriptor> lock_;  ///< says that a process works on `partial_`
   bool replace_ = false, named_by_us_ = false, made_parent_ = false, committed_ = false;
 };
 

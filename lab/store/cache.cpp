@@ -9,6 +9,7 @@
 #include "hwsim/base/byte_codec.h"
 #include "hwsim/base/content_hash.h"
 #include "lab/base/messages.h"
+#include "pipeline/base/sealed_file.h"
 
 namespace hwsim::lab {
 namespace {

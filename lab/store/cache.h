@@ -11,7 +11,10 @@
 
 #include "lab/base/files.h"
 #include "lab/base/lab_options.h"
-#include "pipeline/base/sealed_file.h"
+
+namespace hwsim::pipeline {
+struct SealKind;
+}
 
 namespace hwsim::lab {
 

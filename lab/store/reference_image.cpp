@@ -8,6 +8,7 @@
 #include "algos/base/reference_frame.h"
 #include "algos/source_digest.h"
 #include "lab/store/image_codec.h"
+#include "pipeline/base/sealed_file.h"
 
 namespace hwsim::lab {
 namespace {

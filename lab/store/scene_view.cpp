@@ -13,6 +13,7 @@
 #include "hwsim/base/file_name.h"
 #include "lab/base/messages.h"
 #include "lab/request/image_input.h"
+#include "pipeline/base/sealed_file.h"
 #include "pipeline/generate/generator_digest.h"
 #include "pipeline/open/scene_source.h"
 

@@ -11,6 +11,7 @@
 #include "hwsim/base/byte_codec.h"
 #include "hwsim/trace/trace_file.h"
 #include "lab/request/request.h"
+#include "pipeline/base/sealed_file.h"
 
 namespace hwsim::lab {
 namespace {

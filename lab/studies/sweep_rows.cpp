@@ -23,7 +23,7 @@ struct PointColumn {
   const char* id;
   const char* title;
   Type type = Type::text;
-  double high = 0.0;  ///< of counts and reals, which begin at 0
+  double high = 0.0;  ///< the largest count or real; the smallest is 0
   int decimals = 0;
   bool may_be_missing = false;
 };
