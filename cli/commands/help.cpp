@@ -27,7 +27,10 @@ ExitStatus explain(std::string topic) {
   topic[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(topic[0])));
   for (const ErrorCode& code : error_codes())
     if (code.code == topic) {
-      write_output(topic + ": " + std::string(code.title) + "\n\n" + std::string(code.explanation) + "\n");
+      const std::string remedy =
+          code.remedy.empty() ? "" : "\nWhat to do: " + std::string(code.remedy) + "\n";
+      write_output(topic + ": " + std::string(code.title) + "\n\n" + std::string(code.explanation) + "\n" +
+                   remedy);
       return ExitStatus::done;
     }
   fail_usage("U014", "no message has the code `" + topic + "`", "", "`hwsim help` lists the codes");

@@ -6,8 +6,9 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "hwsim/base/printable.h"
 #include "cli/terminal/progress.h"
+#include "hwsim/base/printable.h"
+#include "lab/catalog/remedies.h"
 
 namespace hwsim::cli {
 namespace {
@@ -56,7 +57,9 @@ void Log::detail(const std::string& line) {
   if (options_.verbosity > 0) write_error(printable(line) + "\n");
 }
 
-void Log::report(const Diagnostic& diagnostic) {
+void Log::report(const Diagnostic& given) {
+  Diagnostic diagnostic = given;  // every message says how to go on
+  if (diagnostic.help.empty()) diagnostic.help = remedy_of(diagnostic.code);
   text_ += render(diagnostic, false);
   if (options_.verbosity >= 0 || diagnostic.severity == Severity::error)
     write_error(render(diagnostic, terminal_.error_color));

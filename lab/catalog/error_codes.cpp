@@ -4,6 +4,7 @@
 
 #include "algos/rooms.h"
 #include "hwsim/gpu/gpu_config.h"
+#include "lab/catalog/remedies.h"
 
 namespace hwsim::lab {
 namespace {
@@ -243,6 +244,7 @@ std::vector<ErrorCode> error_codes() {
   for (const ConfigCode& code : config_codes()) codes.push_back({code.code, code.title, code.explanation});
   for (const algos::MessageCode& code : algos::message_codes())
     codes.push_back({code.code, code.title, code.explanation});
+  for (ErrorCode& code : codes) code.remedy = remedy_of(code.code);
   std::sort(codes.begin(), codes.end(),
             [](const ErrorCode& a, const ErrorCode& b) { return a.code < b.code; });
   return codes;

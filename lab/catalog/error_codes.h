@@ -8,6 +8,7 @@ namespace hwsim::lab {
 
 struct ErrorCode {
   std::string_view code, title, explanation;
+  std::string_view remedy{};  ///< how to go on; empty for notes
 };
 
 /// Every code of a message, sorted. A test compares them with those that the sources use.

@@ -94,7 +94,9 @@ TEST(HelpTest, ExplainsExactlyTheCodesThatTheSourcesUse) {
     for (const fs::directory_entry& entry :
          fs::recursive_directory_iterator(fs::path(hwsim::test::source_dir()) / folder)) {
       const std::string ending = entry.path().extension().string();
-      if ((ending != ".cpp" && ending != ".h") || entry.path().filename() == "error_codes.cpp") continue;
+      if ((ending != ".cpp" && ending != ".h") || entry.path().filename() == "error_codes.cpp" ||
+          entry.path().filename() == "remedies.cpp")
+        continue;
       std::ifstream file(entry.path());
       std::ostringstream buffer;
       buffer << file.rdbuf();

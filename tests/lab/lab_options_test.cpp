@@ -148,6 +148,16 @@ TEST(Catalog, EveryNameHasItsEntry) {
   for (std::size_t i = 1; i < codes.size(); ++i) EXPECT_LT(codes[i - 1].code, codes[i].code);
 }
 
+/// A rejection without a way on leaves the user alone; most messages cannot know one, their code does.
+TEST(Catalog, EveryCodeOfAnErrorSaysHowToGoOn) {
+  const auto is_note = [](std::string_view code) {
+    return code[0] == 'K' || code[0] == 'P' || code.starts_with("S1") || code.starts_with("S3") ||
+           code.starts_with("T1");
+  };
+  for (const ErrorCode& code : Lab().catalog().error_codes())
+    EXPECT_NE(code.remedy.empty(), !is_note(code.code)) << code.code << " " << code.title;
+}
+
 TEST(SelfCheck, FindsWhatIsMissingAndGoesOn) {
   const Workbench bench;
   std::ofstream(bench.path("file")) << "in the way";
