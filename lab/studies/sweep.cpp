@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <utility>
 
 #include "lab/base/build_info.h"
@@ -56,16 +58,44 @@ class ResultBatch {
   Clock::time_point oldest_;
 };
 
+/// How many points are claimed at a time: as many as take about a fifth of a second, so that the transaction
+/// costs little and other processes find work.
+class BlockSize {
+ public:
+  std::size_t points() const { return points_; }
+  template <class Work>
+  void measure(const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    points_ =
+        took.count() < kShortest_s ? std::min(2 * points_, kMost) : std::max(points_ / 2, std::size_t{1});
+  }
+
+ private:
+  static constexpr double kShortest_s = 0.2;
+  static constexpr std::size_t kMost = 256;
+  std::size_t points_ = 1;
+};
+
 class SweepRunner {
  public:
   SweepRunner(SweepStore& store, Session& session) : store_(store), session_(session), batch_(store) {}
 
-  void run(const PlannedPoint& planned) {
-    if (store_.state_of(planned.id) == "done") return;
-    if (!is_quick(planned)) {
-      batch_.write();
-      store_.start(planned.id);
+  /// Runs the points that no other process has done or runs now.
+  void run(std::span<const PlannedPoint> block, StageProgress& progress) {
+    std::vector<std::string> ids;
+    for (const PlannedPoint& planned : block) ids.push_back(planned.id);
+    const std::vector<bool> claimed = store_.claim(ids);
+    for (std::size_t i = 0; i < block.size(); ++i) {
+      if (claimed[i]) run(block[i]);
+      progress.next(point_name(*block[i].technique, block[i].gpu));
     }
+  }
+  void end() { batch_.write(); }
+
+ private:
+  void run(const PlannedPoint& planned) {
     try {
       Simulator simulator(*planned.plan, *planned.scene, nullptr, session_.traces());
       batch_.add(planned.id, simulator.run(*planned.technique, planned.gpu, nullptr));
@@ -75,16 +105,6 @@ class SweepRunner {
       warn_of_failure(planned, error, session_.observer());
     }
   }
-  void end() { batch_.write(); }
-
- private:
-  /// A point that is only timed takes less than its transaction would.
-  bool is_quick(const PlannedPoint& planned) const {
-    return planned.plan->engine != Engine::detailed &&
-           session_.traces().holds(*planned.scene, *planned.technique, planned.gpu,
-                                   {planned.plan->skip, false});
-  }
-
   SweepStore& store_;
   Session& session_;
   ResultBatch batch_;
@@ -94,16 +114,16 @@ void run_points(const SweepPlan& plan, const SweepJob& job, SweepStore& store, S
   store.remember("command_line", job.command_line);
   store.remember("version", std::string(build_info().version));
   store.add(plan.size(), [&plan](std::size_t i) { return plan.row(i); });
-  StageProgress progress(session.observer(), plan.size());
+  std::vector<std::size_t> ours;
+  for (const std::size_t i : plan.order())
+    if (i % job.shard.count == job.shard.index) ours.push_back(i);
+  StageProgress progress(session.observer(), ours.size());
   SweepRunner runner(store, session);
-  for (const std::size_t i : plan.order()) {
-    if (i % job.shard.count != job.shard.index) {
-      progress.next("a point of another shard");
-      continue;
-    }
-    const PlannedPoint planned = plan[i];
-    runner.run(planned);
-    progress.next(point_name(*planned.technique, planned.gpu));
+  BlockSize size;
+  for (std::size_t at = 0; at < ours.size();) {
+    std::vector<PlannedPoint> block;
+    for (; block.size() < size.points() && at < ours.size(); ++at) block.push_back(plan[ours[at]]);
+    size.measure([&] { runner.run(block, progress); });
   }
   runner.end();
 }

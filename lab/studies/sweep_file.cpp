@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint32_t kApplicationId = 0x68775357;  // "hwSW", in the header of the file
-constexpr std::uint32_t kSchemaVersion = 2;           // raised when a table or a column changes its meaning
+constexpr std::uint32_t kSchemaVersion = 3;           // raised when a table or a column changes its meaning
 
 constexpr const char* kSchema = R"(
 CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -28,7 +28,7 @@ CREATE TABLE point (
   id TEXT PRIMARY KEY, number INTEGER NOT NULL, scene TEXT NOT NULL, technique TEXT NOT NULL,
   gpu TEXT NOT NULL, engine TEXT NOT NULL, width_px INTEGER NOT NULL, height_px INTEGER NOT NULL,
   settings TEXT NOT NULL, run_file TEXT NOT NULL, gpu_file TEXT NOT NULL,
-  state TEXT NOT NULL, message TEXT NOT NULL DEFAULT '',
+  state TEXT NOT NULL, owner TEXT NOT NULL DEFAULT '', message TEXT NOT NULL DEFAULT '',
   time_ms REAL, lo_ms REAL, hi_ms REAL, support TEXT, limiter TEXT, dram_mb REAL, memory_mib REAL,
   shaded_samples INTEGER, from_cache INTEGER) WITHOUT ROWID;
 CREATE TABLE pass (

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "algos/rooms.h"
 #include "hwsim/base/units_of_measure.h"
 #include "lab/base/build_info.h"
 #include "lab/base/json_text.h"
 #include "lab/base/messages.h"
+#include "lab/store/process_id.h"
 #include "lab/studies/sweep_rows.h"
 
 namespace hwsim::lab {
@@ -41,7 +43,10 @@ void require_model(const std::string& found, std::string_view wanted, const std:
 }  // namespace
 
 SweepStore::SweepStore(const std::string& path, SweepAccess access)
-    : path_(path), writes_(access != SweepAccess::look), database_(open_sweep(path, access)) {
+    : path_(path),
+      process_(own_process_id()),
+      writes_(access != SweepAccess::look),
+      database_(open_sweep(path, access)) {
   if (!writes_) return;
   require_model(model_of(database_), model_version(), path_);
   remember("model_version", std::string(model_version()));
@@ -68,9 +73,20 @@ Database::Statement& SweepStore::prepared(const char* sql) {
              : statements_.emplace(sql, Database::Statement(database_, sql)).first->second;
 }
 
+void SweepStore::interrupt_ended() {
+  std::set<std::string> ended;
+  Database::Statement running(database_, "SELECT DISTINCT owner FROM point WHERE state = 'running'");
+  while (running.step())
+    if (const std::string owner = running.text(0); has_ended(owner)) ended.insert(owner);
+  for (const std::string& owner : ended)
+    prepared("UPDATE point SET state = 'interrupted', owner = '' WHERE state = 'running' AND owner = ?")
+        .bind(1, owner)
+        .run();
+}
+
 void SweepStore::add(std::size_t count, const std::function<SweepPoint(std::size_t)>& point_at) {
   Database::Transaction transaction(database_);
-  database_.execute("UPDATE point SET state = 'interrupted' WHERE state = 'running'");
+  interrupt_ended();
   Database::Statement insert(database_,
                              "INSERT INTO point (id, number, scene, technique, gpu, engine, width_px, "
                              "height_px, settings, run_file, gpu_file, state) VALUES "
@@ -101,16 +117,35 @@ std::string SweepStore::state_of(const std::string& id) {
   return state;
 }
 
-void SweepStore::set_state(const std::string& id, const std::string& state, const std::string& message) {
-  prepared("UPDATE point SET state = ?, message = ? WHERE id = ?")
-      .bind(1, state)
-      .bind(2, message)
-      .bind(3, id)
-      .run();
+bool SweepStore::is_free(const std::string& id) {
+  Database::Statement& select = prepared("SELECT state, owner FROM point WHERE id = ?");
+  const bool known = select.bind(1, id).step();
+  const std::string state = known ? select.text(0) : "done", owner = known ? select.text(1) : "";
+  select.reset();
+  return state != "done" && (state != "running" || owner == process_ || has_ended(owner));
 }
 
-void SweepStore::start(const std::string& id) { set_state(id, "running", ""); }
-void SweepStore::fail(const std::string& id, const std::string& message) { set_state(id, "failed", message); }
+std::vector<bool> SweepStore::claim(std::span<const std::string> ids) {
+  Database::Transaction transaction(database_);
+  std::vector<bool> got;
+  for (const std::string& id : ids) {
+    got.push_back(is_free(id));
+    if (got.back())
+      prepared("UPDATE point SET state = 'running', owner = ?, message = '' WHERE id = ?")
+          .bind(1, process_)
+          .bind(2, id)
+          .run();
+  }
+  transaction.commit();
+  return got;
+}
+
+void SweepStore::fail(const std::string& id, const std::string& message) {
+  prepared("UPDATE point SET state = 'failed', owner = '', message = ? WHERE id = ?")
+      .bind(1, message)
+      .bind(2, id)
+      .run();
+}
 
 void SweepStore::finish(std::span<const FinishedPoint> points) {
   Database::Transaction transaction(database_);
@@ -124,7 +159,8 @@ void SweepStore::finish(const std::string& id, const PointResult& result) {
     return (bytes.total_read() + bytes.total_write()) / kBytesPerMb;
   };
   Database::Statement& update = prepared(
-      "UPDATE point SET state = 'done', message = '', time_ms = ?, lo_ms = ?, hi_ms = ?, support = ?, "
+      "UPDATE point SET state = 'done', owner = '', message = '', time_ms = ?, lo_ms = ?, hi_ms = ?, support "
+      "= ?, "
       "limiter = "
       "?, dram_mb = ?, memory_mib = ?, shaded_samples = ?, from_cache = ? WHERE id = ?");
   update.bind(1, timing.time_ns / kNsPerMs).bind_null(2).bind_null(3).bind(4, support_name(timing.support));

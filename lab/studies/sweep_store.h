@@ -37,12 +37,14 @@ class SweepStore {
   SweepStore(const SweepStore&) = delete;
   SweepStore& operator=(const SweepStore&) = delete;
 
-  /// Points that are new become pending; those that a killed process left running become interrupted.
+  /// Points that are new become pending; those whose process has ended while they ran become interrupted.
   void add(std::size_t count, const std::function<SweepPoint(std::size_t)>& point_at);
   void remember(const std::string& key, const std::string& value);
 
   std::string state_of(const std::string& id);
-  void start(const std::string& id);
+  /// Takes points for this process, which are then running: all but those that are done and those that
+  /// another process runs. Returns which of them it got. One transaction: no point is run twice.
+  std::vector<bool> claim(std::span<const std::string> ids);
   /// All in one transaction.
   void finish(std::span<const FinishedPoint> points);
   void fail(const std::string& id, const std::string& message);
@@ -57,12 +59,16 @@ class SweepStore {
   std::map<std::string, std::size_t> states();
 
  private:
-  void set_state(const std::string& id, const std::string& state, const std::string& message);
+  /// Running points whose process has ended become interrupted.
+  void interrupt_ended();
+  /// Whether the point is there for this process.
+  bool is_free(const std::string& id);
   void finish(const std::string& id, const PointResult& result);
   /// The statement, compiled once.
   Database::Statement& prepared(const char* sql);
 
   std::string path_;
+  std::string process_;  ///< the owner of what this store claims
   bool writes_;
   Database database_;
   std::map<const char*, Database::Statement> statements_;

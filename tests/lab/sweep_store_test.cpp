@@ -2,6 +2,8 @@
 #include "lab/studies/sweep_store.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -81,6 +83,16 @@ class SweepStoreTest : public ::testing::Test {
     database.execute("CREATE TABLE point (id TEXT, note TEXT); INSERT INTO point VALUES ('p1', 'a thesis')");
   }
 
+  /// As a killed process leaves a point of a.db.
+  void claim_and_die(const std::string& id) const {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      SweepStore(path("a.db"), SweepAccess::go_on).claim(std::vector{id});
+      ::_exit(0);
+    }
+    ::waitpid(child, nullptr, 0);
+  }
+
   /// The bytes of every file in the folder.
   std::map<std::string, std::string> files() const {
     std::map<std::string, std::string> found;
@@ -142,10 +154,23 @@ TEST_F(SweepStoreTest, MergeOfAFileThatIsNotThereIsRefused) {
 
 TEST_F(SweepStoreTest, PointsThatAKilledProcessLeftAreInterrupted) {
   make("a.db", {{"p1", 0.0}});
-  SweepStore(path("a.db"), SweepAccess::go_on).start("p1");
+  claim_and_die("p1");
   SweepStore a(path("a.db"), SweepAccess::go_on);
   a.add(1, [](std::size_t) { return point("p1", 1); });
   EXPECT_EQ(a.state_of("p1"), "interrupted");
+}
+
+TEST_F(SweepStoreTest, PointOfALivingProcessIsNotClaimed) {
+  make("a.db", {{"p1", 0.0}, {"p2", 0.0}, {"p3", 1e6}});
+  SweepStore a(path("a.db"), SweepAccess::go_on);
+  const std::vector<std::string> all = {"p1", "p2", "p3"};
+  Database(path("a.db"), Database::Mode::write)
+      .execute("UPDATE point SET state = 'running', owner = 'another-machine 1 2' WHERE id = 'p1'");
+  EXPECT_EQ(a.claim(all), (std::vector<bool>{false, true, false})) << "p1 runs elsewhere, p3 is done";
+  a.add(1, [](std::size_t) { return point("p1", 1); });
+  EXPECT_EQ(a.state_of("p1"), "running");
+  claim_and_die("p2");
+  EXPECT_EQ(a.claim(all), (std::vector<bool>{false, true, false})) << "what this process has, it keeps";
 }
 
 TEST_F(SweepStoreTest, FilesOfOtherProgramsStayByteForByteAsTheyWere) {
@@ -172,7 +197,7 @@ TEST_F(SweepStoreTest, LookAndBeingMergedLeaveAnotherSweepAsItWas) {
   {
     SweepStore looked(path("a.db"), SweepAccess::look);
     EXPECT_EQ(collected(looked.points()).rows.size(), 2u);
-    EXPECT_THROW(looked.start("p2"), InputError) << "it is open for reading only";
+    EXPECT_THROW(looked.claim(std::vector<std::string>{"p2"}), InputError) << "it is open for reading only";
   }
   EXPECT_EQ(SweepStore(path("b.db"), SweepAccess::go_on).merge(path("a.db")), 1u);
   EXPECT_EQ(files().at("a.db"), before.at("a.db"));
@@ -195,7 +220,7 @@ TEST_F(SweepStoreTest, ReplacedSweepOfAnyVersionIsEmptyAndOfThisVersion) {
 
 TEST_F(SweepStoreTest, PointThatAKilledProcessLeftRunningIsStillToBeDone) {
   make("a.db", {{"p1", 1e6}, {"p2", 0.0}, {"p3", 0.0}});
-  SweepStore(path("a.db"), SweepAccess::go_on).start("p2");
+  claim_and_die("p2");
   const SweepSummary summary = Lab().sweep({}, {.database = path("a.db")});
   EXPECT_EQ(summary.done, 1u);
   EXPECT_EQ(summary.left, 2u);
