@@ -144,8 +144,10 @@ F shadow_visibility(S& s, const LightingUniforms& u, const Vec3<F>& position, co
     const F stored = s.load_image(u.shadow_slot, xi + I(dx), yi + I(dy), I(0)).x;
     return select(depth <= stored, F(1.0f), F(0.0f));
   };
-  const F upper = tap(0, 0) * (F(1.0f) - fx) + tap(1, 0) * fx;
-  const F lower = tap(0, 1) * (F(1.0f) - fx) + tap(1, 1) * fx;
+  // Statements: operands are evaluated in an order that compilers choose.
+  const F t10 = tap(1, 0), t00 = tap(0, 0), t11 = tap(1, 1), t01 = tap(0, 1);
+  const F upper = t00 * (F(1.0f) - fx) + t10 * fx;
+  const F lower = t01 * (F(1.0f) - fx) + t11 * fx;
   return upper + (lower - upper) * fy;
 }
 

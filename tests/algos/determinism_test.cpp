@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <span>
+#include <type_traits>
 
 #include "algos/frame_run.h"
 #include "hwsim/base/content_hash.h"
@@ -40,17 +41,21 @@ std::span<const std::uint8_t> bytes_of(const T* values, std::size_t count) {
   return {reinterpret_cast<const std::uint8_t*>(values), count * sizeof(T)};
 }
 
-/// Hashes of the image and of every chunk, and the frame's counters by name.
+/// Hashes of the image, of every chunk and of the reuse of blocks, and the frame's counters by name.
 std::map<std::string, std::uint64_t> signature(const FrameSetup& setup, const Emulation& e) {
   const std::string key = setup.technique + "/" + setup.scene + "/";
   std::map<std::string, std::uint64_t> all;
   all[key + "image"] = fnv1a(bytes_of(e.color.pixels.data(), e.color.pixels.size()));
+  static_assert(std::has_unique_object_representations_v<ReuseProfile>, "its bytes are its numbers");
   std::uint64_t& chunks = all[key + "chunks"];
+  std::uint64_t& reuse = all[key + "reuse"];
   const PassCounters sum = total(e.trace);
-  for (const PassWork& pass : e.trace.passes)
+  for (const PassWork& pass : e.trace.passes) {
+    reuse = fnv1a(bytes_of(&pass.reuse, 1), reuse);
     for (const PassCounters& chunk : pass.chunks)
       for (const auto& [info, place] : algos::counters())
         chunks = fnv1a(bytes_of(&values(chunk)[place], 1), chunks);
+  }
   for (const auto& [info, place] : algos::counters()) all[key + std::string(info.id)] = values(sum)[place];
   return all;
 }

@@ -227,14 +227,14 @@ template <GBufferEncoding kEncoding, class S>
 typename S::M material_differs(S& s, typename S::I x, typename S::I y, typename S::I sample) {
   using I = typename S::I;
   const auto at = [&](int slot) HWY_ATTR {
-    return differs(s.load_image(slot, x, y, sample), s.load_image(slot, x, y, I(0)));
+    const auto first = s.load_image(slot, x, y, I(0)), own = s.load_image(slot, x, y, sample);
+    return differs(own, first);
   };
-  if constexpr (kEncoding == GBufferEncoding::gradients)
-    return at(0) | at(1);
-  else if constexpr (kEncoding == GBufferEncoding::record)
-    return at(2) | at(3);
-  else
-    return at(1) | at(2);
+  constexpr int kSlot = kEncoding == GBufferEncoding::gradients ? 0
+                        : kEncoding == GBufferEncoding::record  ? 2
+                                                                : 1;
+  const auto second = at(kSlot + 1), first = at(kSlot);
+  return first | second;
 }
 
 /// Lauritzen 2010: a sample whose depth or normal departs from sample 0's. Uses two blocks from `loop_block`

@@ -216,8 +216,9 @@ class CmaaBlend {
       const F share = select(count < F(2.5f), F(0.15f), select(count < F(3.5f), F(0.13f), F(0.07f)));
       const I x = x0_ + I(px), y = y0_ + I(py);
       const auto at = [&](int dx, int dy) HWY_ATTR { return s_.load_image(1, x + I(dx), y + I(dy), I(0)); };
-      const Color sum = at(0, 0) + at(1, 0) * (share * right) + at(0, -1) * (share * top) +
-                        at(-1, 0) * (share * left) + at(0, 1) * (share * bottom);
+      const Color below = at(0, 1), before = at(-1, 0), above = at(0, -1), after = at(1, 0), own = at(0, 0);
+      const Color sum = own + after * (share * right) + above * (share * top) + before * (share * left) +
+                        below * (share * bottom);
       s_.store_image(0, x, y, I(0), sum * (F(1.0f) / (F(1.0f) + share * count)), blended);
     });
   }

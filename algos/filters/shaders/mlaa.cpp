@@ -70,14 +70,14 @@ struct MlaaCountShader {
     I above(0), right(0);
     const M has_above = has_edge<M>(own, kEdgeAbove), has_right = has_edge<M>(own, kEdgeRight);
     s.branch(kAbove, has_above, [&]() HWY_ATTR {
-      const I runs = walk(kLeftwards, has_above, kEdgeAbove, -1, 0) +
-                     walk(kRightwards, has_above, kEdgeAbove, 1, 0) * scale;
-      above = select(has_above, runs, above);
+      const I on = walk(kRightwards, has_above, kEdgeAbove, 1, 0);
+      const I back = walk(kLeftwards, has_above, kEdgeAbove, -1, 0);
+      above = select(has_above, back + on * scale, above);
     });
     s.branch(kRight, has_right, [&]() HWY_ATTR {
-      const I runs = walk(kUpwards, has_right, kEdgeRight, 0, -1) +
-                     walk(kDownwards, has_right, kEdgeRight, 0, 1) * scale;
-      right = select(has_right, runs, right);
+      const I on = walk(kDownwards, has_right, kEdgeRight, 0, 1);
+      const I back = walk(kUpwards, has_right, kEdgeRight, 0, -1);
+      right = select(has_right, back + on * scale, right);
     });
     s.output(0, {to_float(above), to_float(right), F(0.0f), F(1.0f)});
   }

@@ -32,8 +32,9 @@ struct SmaaEdgeShader {
     F red(0.0f), green(0.0f);
     s.branch(1, edge, [&]() HWY_ATTR {
       // An edge stays if no neighboring contrast is more than twice its own.
-      const F across = max(max(d_left, d_top), max(contrast(center, at(1, 0)), contrast(center, at(0, 1))));
-      const F before = max(contrast(left, at(-2, 0)), contrast(top, at(0, -2)));
+      const Color bottom = at(0, 1), right = at(1, 0), second_top = at(0, -2), second_left = at(-2, 0);
+      const F across = max(max(d_left, d_top), max(contrast(center, right), contrast(center, bottom)));
+      const F before = max(contrast(left, second_left), contrast(top, second_top));
       const F highest = max(across, before);
       red = select(has_left & (F(2.0f) * d_left >= highest), F(1.0f), F(0.0f));
       green = select(has_top & (F(2.0f) * d_top >= highest), F(1.0f), F(0.0f));
@@ -168,8 +169,10 @@ class SmaaWeights {
     const auto crossing = [&](F along, float down)
                               HWY_ATTR { return edges_at<kVertical>(along, F(down)).across; };
     const F past = end + F(1.0f);
-    const F inside = F(1.0f) - at_start * crossing(start, 1.0f) - at_end * crossing(past, 1.0f);
-    const F outside = F(1.0f) - at_start * crossing(start, -2.0f) - at_end * crossing(past, -2.0f);
+    const F end_inside = crossing(past, 1.0f), start_inside = crossing(start, 1.0f);
+    const F end_outside = crossing(past, -2.0f), start_outside = crossing(start, -2.0f);
+    const F inside = F(1.0f) - at_start * start_inside - at_end * end_inside;
+    const F outside = F(1.0f) - at_start * start_outside - at_end * end_outside;
     w.first = w.first * min(max(inside, F(0.0f)), F(1.0f));
     w.second = w.second * min(max(outside, F(0.0f)), F(1.0f));
   }
@@ -283,7 +286,8 @@ struct SmaaBlendShader {
         return s.sample_image(1, center_of<F>(x) + select(across, offset, zero),
                               center_of<F>(y) + select(across, zero, offset));
       };
-      const Color mixed = at(on) * (on / total) + at(-back) * (back / total);
+      const Color behind = at(-back), ahead = at(on);
+      const Color mixed = ahead * (on / total) + behind * (back / total);
       color = select_color(blended, mixed, color);
     });
     s.output(0, {color.x, color.y, color.z, F(1.0f)});
