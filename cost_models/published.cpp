@@ -115,8 +115,8 @@ RowUse use_from_name(const std::string& name, const std::string& path) {
 std::string filled(std::string text, const PublishedRow& row) {
   for (const auto& [name, value] :
        {std::pair{std::string("{msaa}"), row.msaa}, std::pair{std::string("{surfaces}"), row.surfaces}})
-    for (auto at = text.find(name); at != std::string::npos; at = text.find(name))
-      text.replace(at, name.size(), value);
+    for (auto at = text.find(name); at != std::string::npos; at = text.find(name, at + value.size()))
+      text.replace(at, name.size(), value);  // the value may hold the name again
   return text;
 }
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Builds with a sanitizer (clang) and runs tests under it: scripts/sanitize.sh asan-ubsan|tsan [all]
-# Without `all`, a subset that takes minutes: asan-ubsan reads damaged files of every kind and draws small frames; tsan
-# runs nine techniques on several threads. HWSIM_BUILD_JOBS and HWSIM_TEST_JOBS set how many jobs run at a time.
+# Without `all`, a subset that takes minutes: asan-ubsan reads damaged files of every kind, draws small frames, and fuzzes
+# each kind of input for ten seconds; tsan runs nine techniques on several threads. HWSIM_BUILD_JOBS and HWSIM_TEST_JOBS set
+# how many jobs run at a time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -9,10 +10,12 @@ preset=${1:-}
 case $preset in
 asan-ubsan)
   programs=(hwsim_tests pipeline_tests cost_models_tests)
+  targets=(hwsim_fuzzers)
   filter='-Accuracy.*:/Accuracy.*:*Tiles*:SceneCounts*:*Conformance*:Compare*:*GroundTruth*:Reference*'
   ;;
 tsan)
   programs=(algos_tests)
+  targets=()
   filter='*ThreadsChangeNothing*'
   ;;
 *)
@@ -32,7 +35,10 @@ if [ "${2:-}" = all ]; then
   cmake --build --preset "$preset" --parallel "$jobs"
   exec ctest --preset "$preset" --parallel "${HWSIM_TEST_JOBS:-$jobs}"
 fi
-cmake --build --preset "$preset" --parallel "$jobs" --target "${programs[@]}"
+cmake --build --preset "$preset" --parallel "$jobs" --target "${programs[@]}" "${targets[@]}"
 for program in "${programs[@]}"; do
   "build/$preset/bin/$program" --gtest_brief=1 --gtest_filter="$filter"
 done
+if [ ${#targets[@]} -gt 0 ]; then
+  ctest --preset "$preset" --tests-regex '^Fuzz\.' --parallel 2
+fi

@@ -194,10 +194,13 @@ std::string trace_layout() {
 }
 
 std::uint64_t trace_version() {
-  const std::string layout = trace_layout();
-  ContentHash hash;
-  hash.add({reinterpret_cast<const std::uint8_t*>(layout.data()), layout.size()});
-  return hash.words()[0];
+  static const std::uint64_t version = [] {  // the text takes as long as reading a small trace
+    const std::string layout = trace_layout();
+    ContentHash hash;
+    hash.add({reinterpret_cast<const std::uint8_t*>(layout.data()), layout.size()});
+    return hash.words()[0];
+  }();
+  return version;
 }
 
 std::vector<std::uint8_t> encode_trace(const WorkTrace& trace) {

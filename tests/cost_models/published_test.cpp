@@ -73,6 +73,20 @@ TEST(Published, ValueThatIsNoFiniteNumberInItsRangeIsRefusedWithItsLine) {
   for (const char* value : {"2", "0.5", "1e3", "NA"}) EXPECT_EQ(message_for(value), "") << value;
 }
 
+// A fuzzer's find: the place was filled for ever.
+TEST(Published, AValueThatNamesItsOwnPlaceIsFilledInOnce) {
+  std::vector<PublishedRow> rows = load_published(kPublished);
+  for (PublishedRow& row : rows)
+    if (row.surfaces == "2") row.surfaces = "{surfaces}";
+  std::set<std::string> techniques;
+  try {
+    for (const Cell& cell : map_rows(rows, kPublished)) techniques.insert(cell.run.technique);
+  } catch (const InputError&) {
+    return;  // rules that match no row any more
+  }
+  EXPECT_TRUE(techniques.contains("sbaa_top:n={surfaces},msaa=8,centroid=off"));
+}
+
 TEST(Published, EveryRowHasAUseAndWhatIsNotFittedAReason) {
   std::map<RowUse, int> uses;
   std::set<std::string> ids;
