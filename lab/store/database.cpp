@@ -15,7 +15,8 @@ constexpr int kBusyMs = 10'000;  // another process holds the lock for a point's
 
 sqlite3* open(const std::string& path, int flags) {
   sqlite3* handle = nullptr;
-  sqlite3_open_v2(path.c_str(), &handle, flags, nullptr);
+  if (sqlite3_open_v2(path.c_str(), &handle, flags, nullptr) == SQLITE_OK)
+    sqlite3_busy_timeout(handle, kBusyMs);
   return handle;  // with the error inside, if there was one
 }
 
@@ -35,8 +36,9 @@ std::string immutable_uri(const std::string& path) {
 sqlite3* open_to_look(const std::string& path) {
   sqlite3* handle = open(path, SQLITE_OPEN_READONLY);
   std::error_code error;
-  const bool readable = sqlite3_exec(handle, "PRAGMA schema_version", nullptr, nullptr, nullptr) == SQLITE_OK;
-  if (readable || std::filesystem::exists(path + "-wal", error)) return handle;
+  const int code = sqlite3_exec(handle, "PRAGMA schema_version", nullptr, nullptr, nullptr);
+  const bool needs_files = code == SQLITE_CANTOPEN || code == SQLITE_READONLY;
+  if (!needs_files || std::filesystem::exists(path + "-wal", error)) return handle;
   sqlite3_close(handle);
   return open(immutable_uri(path), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
 }
@@ -51,7 +53,6 @@ sqlite3* open(const std::string& path, Database::Mode mode) {
 Database::Database(const std::string& path, Mode mode)
     : path_(path), handle_(open(path, mode), sqlite3_close) {
   require(sqlite3_errcode(handle_.get()));
-  require(sqlite3_busy_timeout(handle_.get(), kBusyMs));
 }
 
 void Database::fail() const {

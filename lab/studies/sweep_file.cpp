@@ -5,11 +5,13 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <thread>
 
 #include "lab/base/messages.h"
 #include "pipeline/base/file_io.h"
@@ -101,6 +103,18 @@ void empty(Database& database) {
   transaction.commit();
 }
 
+/// The mode needs the database for itself, and SQLite does not wait for that where another process opens or
+/// closes it.
+void log_writes(Database& database) {
+  constexpr int kAttempts = 1000;
+  constexpr std::chrono::milliseconds kPause{10};
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (database.try_execute("PRAGMA journal_mode=WAL")) return;
+    std::this_thread::sleep_for(kPause);
+  }
+  database.execute("PRAGMA journal_mode=WAL");
+}
+
 void require_sweep(const std::string& path, bool any_version) {
   const std::optional<std::uint32_t> version = version_in_header(path);
   if (!version || !has_tables(path)) refuse("`" + path + "` is no database of `hwsim sweep`");
@@ -124,7 +138,8 @@ Database open_sweep(const std::string& path, SweepAccess access) {
   require_sweep(path, access == SweepAccess::replace);
   if (access == SweepAccess::look) return Database(path, Database::Mode::look);
   Database database(path, Database::Mode::write);
-  database.execute("PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL; PRAGMA foreign_keys=ON");
+  log_writes(database);
+  database.execute("PRAGMA synchronous=NORMAL; PRAGMA foreign_keys=ON");
   if (access == SweepAccess::replace) empty(database);
   return database;
 }

@@ -173,6 +173,29 @@ TEST_F(SweepStoreTest, PointOfALivingProcessIsNotClaimed) {
   EXPECT_EQ(a.claim(all), (std::vector<bool>{false, true, false})) << "what this process has, it keeps";
 }
 
+TEST_F(SweepStoreTest, ManyProcessesOpenAndCloseOneDatabase) {
+  make("a.db", {{"p1", 0.0}});
+  constexpr int kProcesses = 8, kTimes = 25;
+  std::vector<pid_t> children;
+  for (int i = 0; i < kProcesses; ++i) {
+    children.push_back(::fork());
+    if (children.back() != 0) continue;
+    int failed = 0;
+    for (int time = 0; time < kTimes; ++time) try {
+        SweepStore(path("a.db"), SweepAccess::go_on).claim(std::vector<std::string>{"p1"});
+      } catch (const InputError& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        ++failed;
+      }
+    ::_exit(failed);
+  }
+  for (const pid_t child : children) {
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0) << "of " << kTimes << " times it failed " << WEXITSTATUS(status);
+  }
+}
+
 TEST_F(SweepStoreTest, FilesOfOtherProgramsStayByteForByteAsTheyWere) {
   make("a.db", {{"p1", 0.0}});
   make_foreign("notes.db");
