@@ -1,5 +1,6 @@
 #pragma once
-// What the fuzz targets share: an input is answered or refused with a message; whatever else happens is a crash.
+// What the fuzz targets share: an input is answered or refused with a message; whatever else happens is a
+// crash.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

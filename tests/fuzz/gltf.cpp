@@ -1,5 +1,5 @@
-// A scene, drawn small and timed. An input that is no GLB file is JSON up to the first NUL and a buffer behind it: a GLB
-// file is made of both, so that lengths fit.
+// A scene, drawn small and timed. An input that is no GLB file is JSON up to the first NUL and a buffer
+// behind it: a GLB file is made of both, so that lengths fit.
 #include "algos/techniques.h"
 #include "fuzz/gpu_work.h"
 #include "hwsim/gpu/every_feature.h"

@@ -1,5 +1,5 @@
-// An image's file, read as a texture and as a picture. Check sums of a PNG are made to fit, as they would in a file that
-// was made to harm.
+// An image's file, read as a texture and as a picture. Check sums of a PNG are made to fit, as they would in
+// a file that was made to harm.
 #include <cmath>
 
 #include "fuzz/fuzz_input.h"
@@ -42,9 +42,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (pipeline::image_format(bytes) == pipeline::ImageFormat::png) mend_check_sums(bytes);
   fuzz::answer_or_refuse([&] {
     const pipeline::RawImage image = pipeline::decode_image(bytes, "input");
-    fuzz::require(image.texels.size() == static_cast<std::size_t>(image.width) *
-                                             static_cast<std::size_t>(image.height),
-                  "an image has all of its texels");
+    fuzz::require(
+        image.texels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height),
+        "an image has all of its texels");
   });
   fuzz::answer_or_refuse([&] {
     const pipeline::Image image = pipeline::read_image(bytes, "input");

@@ -1,4 +1,5 @@
-// Published tables and their mapping: the input's pieces, between NULs, are a table and up to five mapping files.
+// Published tables and their mapping: the input's pieces, between NULs, are a table and up to five mapping
+// files.
 #include <array>
 
 #include "cost_models/published.h"
@@ -12,10 +13,12 @@ struct MappingFile {
 };
 constexpr std::array<MappingFile, 5> kMapping = {
     {{"mapping/uses.csv",
-      "document,table,gpu,scene,technique,msaa,surfaces,pass,quantity,use,reason\n*,*,*,*,*,*,*,*,*,fitted,\n"},
+      "document,table,gpu,scene,technique,msaa,surfaces,pass,quantity,use,reason\n*,*,*,*,*,*,*,*,*,fitted,"
+      "\n"},
      {"mapping/gpus.csv", "printed,gpu\nGeForce GTX 470,gtx470\n"},
      {"mapping/scenes.csv",
-      "document,scene,view,lighting,stand_in,camera,settings,unlit\n*,*,*,*,car_body,0,scene.shadows=false,\n"},
+      "document,scene,view,lighting,stand_in,camera,settings,unlit\n*,*,*,*,car_body,0,scene.shadows=false,"
+      "\n"},
      {"mapping/techniques.csv",
       "document,technique,gpu,msaa,template,repeat\n*,*,*,*,\"sbaa_top:n={surfaces},msaa={msaa}\",1\n"},
      {"mapping/passes.csv", "document,technique,pass,trace_passes\n*,*,*,*\n"}}};

@@ -1,5 +1,5 @@
-// The database of a sweep: any file, or a sweep into whose one point the input's values of any type are written. It is
-// looked at, printed in every shape, and merged into another sweep.
+// The database of a sweep: any file, or a sweep into whose one point the input's values of any type are
+// written. It is looked at, printed in every shape, and merged into another sweep.
 #include <array>
 
 #include "fuzz/fuzz_input.h"
@@ -8,11 +8,10 @@
 namespace {
 using namespace hwsim;
 
-constexpr std::array kColumns = {"number",  "scene",    "technique", "gpu",      "engine",
-                                 "width_px", "height_px", "settings", "run_file", "gpu_file",
-                                 "state",   "message",  "time_ms",   "lo_ms",    "hi_ms",
-                                 "support", "limiter",  "dram_mb",   "memory_mib", "shaded_samples",
-                                 "from_cache"};
+constexpr std::array kColumns = {
+    "number",   "scene",    "technique", "gpu",     "engine",     "width_px",       "height_px",
+    "settings", "run_file", "gpu_file",  "state",   "message",    "time_ms",        "lo_ms",
+    "hi_ms",    "support",  "limiter",   "dram_mb", "memory_mib", "shaded_samples", "from_cache"};
 
 /// Takes the input apart: a byte for the column, one for the type, then the value.
 class Values {
@@ -49,7 +48,8 @@ void write_values(const std::string& path, fuzz::Bytes input) {
   lab::Database database(path, lab::Database::Mode::write);
   empty_sweep(database);
   database.execute(
-      "INSERT INTO point (id, number, scene, technique, gpu, engine, width_px, height_px, settings, run_file, "
+      "INSERT INTO point (id, number, scene, technique, gpu, engine, width_px, height_px, settings, "
+      "run_file, "
       "gpu_file, state) VALUES ('p', 1, 'grass', 'none', 'gtx980', 'queue', 64, 64, '{}', '', '', 'done')");
   while (values.more()) {
     const std::string column = kColumns.at(values.byte() % kColumns.size());

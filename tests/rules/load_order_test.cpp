@@ -1,5 +1,5 @@
-// Operands of an operator and arguments of a call are evaluated in an order of the compiler's own. Two tracked accesses in
-// one of them would give traces that differ between compilers, so each is a statement.
+// Operands of an operator and arguments of a call are evaluated in an order of the compiler's own. Two
+// tracked accesses in one of them would give traces that differ between compilers, so each is a statement.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -59,7 +59,8 @@ void add_callers(const std::string& code, std::set<std::string>& names) {
   }
 }
 
-/// The parts of a file whose order the language fixes: statements, elements of braces, sides of `?:`, declarators.
+/// The parts of a file whose order the language fixes: statements, elements of braces, sides of `?:`,
+/// declarators.
 std::vector<std::string> ordered_parts(const std::string& code) {
   std::vector<std::string> parts{""};
   int depth = 0;
@@ -79,9 +80,10 @@ std::vector<std::string> ordered_parts(const std::string& code) {
 }
 
 std::vector<std::string> unordered_accesses(const std::string& text) {
-  std::set<std::string> names = {"load_image",     "load_image_int",       "load_buffer",       "sample_image",
-                                 "sample_texture", "sample_texture_alpha", "sample_texture_at", "atomic_add",
-                                 "read_texel",     "atomic_exchange",      "load_group_byte"};
+  std::set<std::string> names = {"load_image",        "load_image_int", "load_buffer",
+                                 "sample_image",      "sample_texture", "sample_texture_alpha",
+                                 "sample_texture_at", "atomic_add",     "read_texel",
+                                 "atomic_exchange",   "load_group_byte"};
   const std::string code = code_of(text);
   add_callers(code, names);
   std::vector<std::string> found;
@@ -99,7 +101,8 @@ TEST(LoadOrder, EachTrackedAccessIsAStatement) {
     std::ifstream in(fs::path(hwsim::test::source_dir()) / file);
     const std::string text(std::istreambuf_iterator<char>(in), {});
     for (const std::string& part : unordered_accesses(text))
-      ADD_FAILURE() << file << ": one statement for each access, in the order in which they shall be:\n" << part;
+      ADD_FAILURE() << file << ": one statement for each access, in the order in which they shall be:\n"
+                    << part;
   }
   EXPECT_GT(seen, 40u) << "the shaders were not found";
 }
@@ -108,7 +111,8 @@ TEST(LoadOrder, TwoOperandsAreFound) {
   const auto count = [](const std::string& text) { return unordered_accesses(text).size(); };
   EXPECT_EQ(count("const F a = s.load_image(0, x).x, b = s.load_image(1, x).x;"), 0u);
   EXPECT_EQ(count("const F a = s.load_image(0, x).x + s.load_image(1, x).x;"), 1u);
-  EXPECT_EQ(count("const auto at = [&](int i) HWY_ATTR { return s.load_image(i); }; sum = f(at(0), at(1));"), 1u);
+  EXPECT_EQ(count("const auto at = [&](int i) HWY_ATTR { return s.load_image(i); }; sum = f(at(0), at(1));"),
+            1u);
   EXPECT_EQ(count("F g(int i) const { return s_.load_buffer(i); } F h() { return g(0) | g(1); }"), 1u);
   EXPECT_EQ(count("return wide ? s.sample_image(0) : s.sample_image(1);"), 0u);
   EXPECT_EQ(count("return {s.sample_image(0), s.sample_image(1)};"), 0u);
