@@ -61,7 +61,7 @@ for target in "${targets[@]}"; do
   mapfile -t seeds < <(seeds_of "$target")
   corpus=$corpora/$target log=$corpora/$target.log crashes=0
   mkdir -p "$corpus" "$corpora/crashes"
-  nice -n 19 "$bin/fuzz_$target" "${limits[@]}" -max_total_time="$seconds" -print_final_stats=1 \
+  "$bin/fuzz_$target" "${limits[@]}" -max_total_time="$seconds" -print_final_stats=1 \
     -artifact_prefix="$corpora/crashes/$target-" "$corpus" "${seeds[@]}" >"$log" 2>&1 || crashes=1
   if [ "$seconds" -ge 60 ] && [ "$crashes" -eq 0 ]; then
     minimize "$corpus" "$target" "${seeds[@]}" || crashes=1

@@ -95,7 +95,9 @@ InputError::InputError(Diagnostic diagnostic, ExitStatus status)
     : std::runtime_error(diagnostic.message), diagnostics_{std::move(diagnostic)}, status_(status) {}
 
 InputError::InputError(std::vector<Diagnostic> diagnostics, ExitStatus status)
-    : std::runtime_error(first_message(diagnostics)), diagnostics_(std::move(diagnostics)), status_(status) {}
+    : std::runtime_error(first_message(diagnostics)), diagnostics_(std::move(diagnostics)), status_(status) {
+  keep_first(diagnostics_);
+}
 
 std::string render(const Diagnostic& d, bool color) {
   const std::string reset = color ? "\033[0m" : "";

@@ -93,7 +93,6 @@ class GpuFiles::Loader {
     if (!base_missing_)
       for (const Key& key : keys_) settle(key);
     if (problems_.empty()) check_rules(config_, problems_);
-    keep_first(problems_);
     if (!problems_.empty()) throw InputError(std::move(problems_));
     return std::move(config_);
   }

@@ -87,6 +87,19 @@ TEST(Published, AValueThatNamesItsOwnPlaceIsFilledInOnce) {
   EXPECT_TRUE(techniques.contains("sbaa_top:n={surfaces},msaa=8,centroid=off"));
 }
 
+// A fuzzer's find: a message for each of 200 rows.
+TEST(Published, ManyProblemsEndInAsManyMessagesAsCanBeRead) {
+  std::vector<PublishedRow> rows = load_published(kPublished);
+  for (PublishedRow& row : rows) row.resolution.clear();
+  try {
+    map_rows(rows, kPublished);
+    FAIL() << "rows without a resolution have no run";
+  } catch (const InputError& error) {
+    ASSERT_EQ(error.diagnostics().size(), kProblemsShown);
+    EXPECT_NE(error.diagnostics().back().message.find(" further problems"), std::string::npos);
+  }
+}
+
 TEST(Published, EveryRowHasAUseAndWhatIsNotFittedAReason) {
   std::map<RowUse, int> uses;
   std::set<std::string> ids;

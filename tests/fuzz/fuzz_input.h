@@ -31,7 +31,7 @@ inline void require(bool holds, const char* law) {
 inline void check_refusal(const InputError& refusal) {
   const std::vector<Diagnostic>& found = refusal.diagnostics();
   require(!found.empty(), "a refusal has a message");
-  require(found.size() <= 4 * kProblemsShown, "a refusal can be read");
+  require(found.size() <= kProblemsShown, "a refusal can be read");
   for (const Diagnostic& d : found) {
     const std::string text = render(d, false);
     if (d.code.empty() || d.code == "X001" || d.message.empty()) broken("a refusal has a code: " + text);
