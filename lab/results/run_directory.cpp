@@ -4,6 +4,7 @@
 #include <fmt/chrono.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <ctime>
 
@@ -61,7 +62,10 @@ RunDirectory::RunDirectory(const OutPlace& place, const std::string& id_source)
   lock_ = std::make_unique<const pipeline::FileDescriptor>(
       ::open(partial_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (lock_->is_open()) lock_->lock();  // file systems without locks: the next run leaves the folder alone
-  write_file(path(kUnfinishedMark), "");
+  // In one call: a kill between a mark's own temporary name and its renaming would leave a folder without it.
+  const pipeline::FileDescriptor mark(
+      ::open(path(kUnfinishedMark).c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
+  if (!mark.is_open()) fail_to_write(final_, {errno, std::generic_category()});
 }
 
 RunDirectory::~RunDirectory() {
