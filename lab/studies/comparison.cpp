@@ -54,7 +54,7 @@ PassDifference pass_difference(const std::string& name, const PassResult* before
     difference.bytes.emplace_back(stream,
                                   Change<double>{value_of(old.bytes, stream), value_of(now.bytes, stream)});
   for (const auto& [id, unused] : (after ? now : old).counters)
-    if (const Change change{value_of(old.counters, id), value_of(now.counters, id)};
+    if (const Change<std::uint64_t> change{value_of(old.counters, id), value_of(now.counters, id)};
         change.before != change.after)
       difference.counters.emplace_back(id, change);
   return difference;
