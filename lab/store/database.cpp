@@ -2,16 +2,22 @@
 
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <cctype>
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include "lab/base/messages.h"
 
 namespace hwsim::lab {
 namespace {
 
-constexpr int kBusyMs = 10'000;  // another process holds the lock for a point's transaction only
+constexpr int kAttempts = 100;
+constexpr std::chrono::milliseconds kPause{10};
+constexpr int kBusyMs =
+    60'000;  // others hold the lock for a fraction of a second each, on a busy machine longer
 
 sqlite3* open(const std::string& path, int flags) {
   sqlite3* handle = nullptr;
@@ -31,16 +37,27 @@ std::string immutable_uri(const std::string& path) {
   return uri + "?immutable=1";
 }
 
+/// Whether SQLite may make the files that it wants beside a database of the mode WAL.
+bool may_write_beside(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return ::access(folder.empty() ? "." : folder.c_str(), W_OK) == 0;
+}
+
 /// SQLite cannot read a database of the mode WAL in a folder without write permission, as it wants a file for
-/// locks there. Without a log beside the database nobody writes it, so that no lock is needed.
+/// locks there. Without a log beside the database nobody writes it, so that no lock is needed. In other
+/// folders the file is away for a moment where another process closes the database.
 sqlite3* open_to_look(const std::string& path) {
-  sqlite3* handle = open(path, SQLITE_OPEN_READONLY);
-  std::error_code error;
-  const int code = sqlite3_exec(handle, "PRAGMA schema_version", nullptr, nullptr, nullptr);
-  const bool needs_files = code == SQLITE_CANTOPEN || code == SQLITE_READONLY;
-  if (!needs_files || std::filesystem::exists(path + "-wal", error)) return handle;
-  sqlite3_close(handle);
-  return open(immutable_uri(path), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
+  for (int attempt = 0;; ++attempt) {
+    sqlite3* handle = open(path, SQLITE_OPEN_READONLY);
+    const int code = sqlite3_exec(handle, "PRAGMA schema_version", nullptr, nullptr, nullptr);
+    if (code != SQLITE_CANTOPEN && code != SQLITE_READONLY) return handle;
+    std::error_code error;
+    const bool is_fixed = !may_write_beside(path) && !std::filesystem::exists(path + "-wal", error);
+    if (!is_fixed && attempt == kAttempts) return handle;
+    sqlite3_close(handle);
+    if (is_fixed) return open(immutable_uri(path), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
+    std::this_thread::sleep_for(kPause);
+  }
 }
 
 sqlite3* open(const std::string& path, Database::Mode mode) {

@@ -62,8 +62,7 @@ std::optional<std::uint32_t> version_in_header(const std::string& path) {
   return is_sweep ? std::optional(word(kUserVersionAt)) : std::nullopt;
 }
 
-bool has_tables(const std::string& path) {
-  Database database(path, Database::Mode::look);
+bool has_tables(Database& database) {
   Database::Statement tables(database,
                              "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN "
                              "('sweep', 'point', 'pass')");
@@ -77,8 +76,8 @@ void write_schema(Database& database) {
 }
 
 /// Appears under its name with all of its tables, or not at all; a file that another process made meanwhile
-/// stays.
-void make(const std::string& path) {
+/// stays. Returns whether this process made it.
+bool make(const std::string& path) {
   std::string unfinished;
   const pipeline::FileDescriptor lock = pipeline::open_unfinished(path, unfinished);
   if (!lock.is_open()) refuse("the database `" + path + "` cannot be made: " + std::strerror(errno));
@@ -90,10 +89,11 @@ void make(const std::string& path) {
     transaction.commit();
   }
   const bool linked = ::link(unfinished.c_str(), path.c_str()) == 0;
-  const std::string why = linked ? "" : std::strerror(errno);
+  const int why = linked ? 0 : errno;
   std::error_code ignored;
   fs::remove(unfinished, ignored);
-  if (!linked) refuse("the database `" + path + "` cannot be made: " + why);
+  if (!linked && why != EEXIST) refuse("the database `" + path + "` cannot be made: " + std::strerror(why));
+  return linked;
 }
 
 void empty(Database& database) {
@@ -115,9 +115,10 @@ void log_writes(Database& database) {
   database.execute("PRAGMA journal_mode=WAL");
 }
 
-void require_sweep(const std::string& path, bool any_version) {
+/// SQLite is not given the file before its header shows that it is a sweep.
+void require_header(const std::string& path, bool any_version) {
   const std::optional<std::uint32_t> version = version_in_header(path);
-  if (!version || !has_tables(path)) refuse("`" + path + "` is no database of `hwsim sweep`");
+  if (!version) refuse("`" + path + "` is no database of `hwsim sweep`");
   if (!any_version && *version != kSchemaVersion)
     refuse(
         fmt::format("`{}` is a sweep of version {}, this program reads {}", path, *version, kSchemaVersion));
@@ -127,17 +128,19 @@ void require_sweep(const std::string& path, bool any_version) {
 
 Database open_sweep(const std::string& path, SweepAccess access) {
   std::error_code error;
-  const bool is_there = fs::exists(path, error);
-  if (is_there && access == SweepAccess::create)
-    fail("U013", "`" + path + "` exists and is not overwritten", "",
-         "another --db, --resume to go on with it, or --force to replace it");
+  bool is_there = fs::exists(path, error);
   if (!is_there && access == SweepAccess::look)
     fail("U021", "there is no database `" + path + "`", "",
          "the name of a database that `hwsim sweep` wrote");
-  if (!is_there) make(path);
-  require_sweep(path, access == SweepAccess::replace);
-  if (access == SweepAccess::look) return Database(path, Database::Mode::look);
-  Database database(path, Database::Mode::write);
+  if (!is_there) is_there = !make(path);  // another process may have been faster
+  if (is_there && access == SweepAccess::create)
+    fail("U013", "`" + path + "` exists and is not overwritten", "",
+         "another --db, --resume to go on with it, or --force to replace it");
+  require_header(path, access == SweepAccess::replace);
+  const bool looks = access == SweepAccess::look;
+  Database database(path, looks ? Database::Mode::look : Database::Mode::write);
+  if (!has_tables(database)) refuse("`" + path + "` is no database of `hwsim sweep`");
+  if (looks) return database;
   log_writes(database);
   database.execute("PRAGMA synchronous=NORMAL; PRAGMA foreign_keys=ON");
   if (access == SweepAccess::replace) empty(database);

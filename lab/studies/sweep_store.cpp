@@ -85,15 +85,23 @@ void SweepStore::interrupt_ended() {
 }
 
 void SweepStore::add(std::size_t count, const std::function<SweepPoint(std::size_t)>& point_at) {
-  Database::Transaction transaction(database_);
+  constexpr std::size_t kTogether = 1000;  // others wait for a transaction, so that it is short
   interrupt_ended();
-  Database::Statement insert(database_,
-                             "INSERT INTO point (id, number, scene, technique, gpu, engine, width_px, "
-                             "height_px, settings, run_file, gpu_file, state) VALUES "
-                             "(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 'pending') ON CONFLICT (id) DO UPDATE SET "
-                             "number = excluded.number");
-  for (std::size_t i = 0; i < count; ++i) {
-    const SweepPoint point = point_at(i);
+  for (std::size_t begin = 0; begin < count; begin += kTogether) {
+    std::vector<SweepPoint> points;
+    for (std::size_t i = begin; i < std::min(count, begin + kTogether); ++i) points.push_back(point_at(i));
+    add(points);
+  }
+}
+
+void SweepStore::add(std::span<const SweepPoint> points) {
+  Database::Transaction transaction(database_);
+  Database::Statement& insert = prepared(
+      "INSERT INTO point (id, number, scene, technique, gpu, engine, width_px, height_px, settings, "
+      "run_file, "
+      "gpu_file, state) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 'pending') ON CONFLICT (id) DO UPDATE SET "
+      "number = excluded.number");
+  for (const SweepPoint& point : points)
     insert.bind(1, point.id)
         .bind(2, point.number)
         .bind(3, point.scene)
@@ -106,7 +114,6 @@ void SweepStore::add(std::size_t count, const std::function<SweepPoint(std::size
         .bind(10, point.run_file)
         .bind(11, point.gpu_file)
         .run();
-  }
   transaction.commit();
 }
 

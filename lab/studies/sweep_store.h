@@ -59,6 +59,7 @@ class SweepStore {
   std::map<std::string, std::size_t> states();
 
  private:
+  void add(std::span<const SweepPoint> points);  ///< one transaction
   /// Running points whose process has ended become interrupted.
   void interrupt_ended();
   /// Whether the point is there for this process.
