@@ -133,8 +133,8 @@ class Builder {
     u->aggregates = o_.aggregates;
     u->code_bits = code_bits_;
     u->positions = positions_;
-    const auto k_m = static_cast<float>(o_.k_m);
-    u->inv_k2 = 1.0f / (k_m * k_m);
+    const auto k = static_cast<float>(o_.k_m * graph_.scene().units_per_option_m);
+    u->inv_k2 = 1.0f / (k * k);
     u->footprint_k =
         o_.k_mode == AgaaScale::footprint ? static_cast<float>(o_.footprint_px) * pixel_m_ : 0.0f;
     u->perspective = perspective_;

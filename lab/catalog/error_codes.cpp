@@ -128,19 +128,18 @@ constexpr ErrorCode kCodes[] = {
     {"S113", "light left out or changed",
      "Its type is unknown, its direction cannot be told, or a value is out of range."},
     {"S114", "first scene taken", "The file has several scenes and names none as the default."},
-    {"S115", "camera left out",
-     "Its values are none that glTF 2.0 allows, or its node has a scale of zero. The other cameras are "
-     "there."},
+    {"S115", "camera left out or changed",
+     "Its values are none that glTF 2.0 allows, or its node has a scale of zero: it is left out, and the "
+     "other cameras are there. An aspectRatio that is none leaves the camera with the picture's own shape."},
     {"S116", "unused meshes not loaded", "No node of the scene refers to them."},
     {"S117", "sun added", "The file has no lights."},
     {"S118", "camera added or completed", "The file has no camera, or one without a far plane."},
     {"S119", "unused buffers not read", "Nothing that is drawn refers to them; they may be missing."},
     {"S120", "scene moved and scaled",
      "Arithmetic is in single precision: a scene at map coordinates, a tiny or a huge one is moved and "
-     "scaled in "
-     "double precision while it is loaded, cameras and lights with it. The picture is that of the same scene "
-     "at the "
-     "origin, in meters."},
+     "scaled in double precision while it is loaded, cameras and lights with it. The picture is that of the "
+     "same scene at the origin, in meters. Where parts lie too far from each other, a warning says so: draw "
+     "them one by one."},
     {"S121", "integers taken as fractions",
      "Colors and texture coordinates in whole numbers lack the flag `normalized`. They are divided by the "
      "largest "
@@ -149,6 +148,10 @@ constexpr ErrorCode kCodes[] = {
      "The lights are so bright that all would be white, as lights in lux and candela are: they are scaled "
      "until a "
      "white surface shows about 1. --exposure sets the factor."},
+    {"S123", "near plane too near",
+     "Depth is stored as a float of 1 - near/distance: where the distance is ten million times the near "
+     "plane, "
+     "all depths are one number, and what lies behind is seen or nothing is. Raise znear in the file."},
     {"S201", "unknown scene",
      "The name is neither a .gltf or .glb file nor a generator of `hwsim list scenes`."},
     {"S202", "unknown parameter of a generator", "`hwsim show GENERATOR` lists its parameters."},

@@ -15,7 +15,7 @@ namespace {
 
 std::vector<TableCell> scene_row(const pipeline::Scene& scene) {
   const pipeline::SceneStats s = pipeline::stats(scene);
-  const glm::vec3 size = s.bounds_max - s.bounds_min;
+  const glm::dvec3 size = glm::dvec3(s.bounds_max - s.bounds_min) * scene.meters_per_unit;
   return {scene.name,
           s.drawn_triangles,
           s.stored_triangles,

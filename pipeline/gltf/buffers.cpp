@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pipeline/gltf/container.h"
+#include "pipeline/gltf/skins.h"
 #include "pipeline/gltf/uri.h"
 
 namespace hwsim::pipeline::gltf {
@@ -26,6 +27,8 @@ class NeededBuffers {
         for (const auto& [name, accessor] : primitive["attributes"].items()) mark_accessor(accessor);
         if (primitive.contains("indices")) mark_accessor(primitive["indices"]);
       }
+    for (const SkinSpec& skin : read_skins(root))
+      if (skin.inverse_bind_matrices >= 0) mark_accessor(skin.inverse_bind_matrices);
     for (const json& texture : array("textures"))
       if (texture.contains("source")) mark_view(array("images")[texture["source"].get<std::size_t>()]);
   }

@@ -9,6 +9,11 @@ namespace hwsim::pipeline::gltf {
 namespace {
 using nlohmann::json;
 
+std::string shown(const json& value) {
+  const std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+  return text.size() > 40 ? text.substr(0, 37) + "..." : text;
+}
+
 // Reads the numbers of one camera; the first thing wrong with them becomes its fault.
 class CameraReader {
  public:
@@ -40,11 +45,12 @@ class CameraReader {
   std::string& fault_;
 };
 
-void read_depth_range(CameraReader& reader, double least_near, CameraSpec& camera) {
-  reader.expect(camera.near >= least_near, "znear", camera.near, least_near > 0.0 ? "above 0" : "0 or more");
+void read_depth_range(CameraReader& reader, CameraSpec& camera) {
+  const bool may_be_zero = camera.orthographic;
+  reader.expect(may_be_zero ? camera.near >= 0.0 : camera.near > 0.0, "znear", camera.near,
+                may_be_zero ? "0 or more" : "above 0");
   const bool infinite = !camera.orthographic && camera.far == 0.0;
   reader.expect(infinite || camera.far > camera.near, "zfar", camera.far, "above znear");
-  reader.expect(camera.far < 1e18, "zfar", camera.far, "below 1e18");
 }
 
 void read_perspective(const json& values, CameraSpec& camera) {
@@ -54,10 +60,16 @@ void read_perspective(const json& values, CameraSpec& camera) {
   camera.far = reader.optional("zfar").value_or(0.0);
   reader.expect(camera.fov_y_rad > 1e-4 && camera.fov_y_rad < std::numbers::pi * 0.999, "yfov",
                 camera.fov_y_rad, "between 0 and pi (radians)");
-  read_depth_range(reader, 1e-30, camera);
+  read_depth_range(reader, camera);
   // A frame of no width says nothing: the image's shape is taken, as where the key is missing.
-  const double aspect = reader.optional("aspectRatio").value_or(0.0);
-  camera.aspect_ratio = aspect > 1e-6 && aspect < 1e6 ? aspect : 0.0;
+  if (!values.contains("aspectRatio")) return;
+  const json& aspect = values["aspectRatio"];
+  const double ratio = aspect.is_number() ? aspect.get<double>() : 0.0;
+  if (ratio > 1e-6 && ratio < 1e6)
+    camera.aspect_ratio = ratio;
+  else
+    camera.remark = "perspective.aspectRatio is " + shown(aspect) +
+                    ", must be a number above 0: the picture's own shape is taken";
 }
 
 void read_orthographic(const json& values, CameraSpec& camera) {
@@ -67,10 +79,9 @@ void read_orthographic(const json& values, CameraSpec& camera) {
   camera.half_height = std::abs(reader.required("ymag"));
   camera.near = reader.required("znear");
   camera.far = reader.required("zfar");
-  reader.expect(camera.half_height > 1e-30 && camera.half_height < 1e18, "ymag", camera.half_height,
-                "neither 0 nor above 1e18");
-  reader.expect(x > 1e-30 && x < 1e18, "xmag", x, "neither 0 nor above 1e18");
-  read_depth_range(reader, 0.0, camera);
+  reader.expect(camera.half_height > 0.0, "ymag", camera.half_height, "another number than 0");
+  reader.expect(x > 0.0, "xmag", x, "another number than 0");
+  read_depth_range(reader, camera);
   if (camera.fault.empty()) camera.aspect_ratio = x / camera.half_height;
 }
 

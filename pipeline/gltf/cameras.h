@@ -9,7 +9,8 @@ namespace hwsim::pipeline::gltf {
 /// A camera as the file has it, in the file's units.
 struct CameraSpec {
   std::string name;
-  std::string fault;  ///< why it cannot be drawn from; empty: it can
+  std::string fault;   ///< why it cannot be drawn from; empty: it can
+  std::string remark;  ///< what is wrong with it and costs no picture; empty: nothing
   bool orthographic = false;
   double fov_y_rad = 0.0;     ///< perspective
   double half_height = 0.0;   ///< orthographic: ymag

@@ -67,11 +67,15 @@ struct DrawnMesh {
   std::string name;
 };
 
-std::vector<DrawnMesh> build_meshes(Scene& scene, Report& report, const tinygltf::Model& model,
-                                    const std::vector<PlacedNode>& nodes, const gltf::MaterialSet& materials,
-                                    const std::vector<bool>& used) {
-  std::vector<int> place(model.meshes.size(), -1);
+// The scene's meshes for those of the file.
+struct BuiltMeshes {
+  std::vector<int> place;  ///< in Scene::meshes; -1: nothing is drawn
   std::vector<glm::dmat4> local_from_mesh;
+};
+
+BuiltMeshes build_meshes(Scene& scene, Report& report, const tinygltf::Model& model,
+                         const gltf::MaterialSet& materials, const std::vector<bool>& used) {
+  BuiltMeshes out{std::vector<int>(model.meshes.size(), -1), std::vector<glm::dmat4>(model.meshes.size())};
   const int default_material = static_cast<int>(model.materials.size());
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {
     if (!used[m]) {
@@ -80,27 +84,29 @@ std::vector<DrawnMesh> build_meshes(Scene& scene, Report& report, const tinygltf
     }
     gltf::BuiltMesh built = gltf::build_mesh(report, model, static_cast<int>(m), materials, default_material);
     if (built.mesh.parts.empty()) continue;
-    place[m] = static_cast<int>(scene.meshes.size());
+    out.place[m] = static_cast<int>(scene.meshes.size());
+    out.local_from_mesh[m] = built.local_from_mesh;
     scene.meshes.push_back(std::move(built.mesh));
-    local_from_mesh.push_back(built.local_from_mesh);
   }
+  return out;
+}
+
+std::vector<DrawnMesh> list_drawn(Report& report, const gltf::Source& source,
+                                  const std::vector<PlacedNode>& nodes, const BuiltMeshes& meshes) {
+  const std::vector<glm::dmat4> skins = gltf::skin_matrices(report, source, nodes);
   std::vector<DrawnMesh> drawn;
   for (const PlacedNode& placed : nodes) {
-    const tinygltf::Node& node = node_at(model, placed);
-    if (node.mesh < 0 || place[static_cast<std::size_t>(node.mesh)] < 0) continue;
+    const tinygltf::Node& node = node_at(source.model, placed);
+    if (node.mesh < 0) continue;
+    const auto mesh = static_cast<std::size_t>(node.mesh);
+    if (meshes.place[mesh] < 0) continue;
     const std::string where = gltf::element("nodes", static_cast<std::size_t>(placed.node));
     // glTF 2.0 section 3.7.3.3: joints place a skinned mesh, its node's own transformation does not.
-    const bool skinned = node.skin >= 0;
-    if (skinned)
-      report.note("S110",
-                  "skins are ignored: skinned meshes are drawn as modeled, their nodes do not move them",
-                  where);
-    const int mesh = place[static_cast<std::size_t>(node.mesh)];
-    const glm::dmat4& local = local_from_mesh[static_cast<std::size_t>(mesh)];
-    const glm::dmat4 matrix = skinned                    ? local
-                              : local == glm::dmat4(1.0) ? placed.world_from_local
-                                                         : placed.world_from_local * local;
-    drawn.push_back({mesh, matrix, node.name.empty() ? where : node.name});
+    const glm::dmat4& place =
+        node.skin < 0 ? placed.world_from_local : skins[static_cast<std::size_t>(node.skin)];
+    const glm::dmat4& local = meshes.local_from_mesh[mesh];
+    drawn.push_back({meshes.place[mesh], local == glm::dmat4(1.0) ? place : place * local,
+                     node.name.empty() ? where : node.name});
   }
   return drawn;
 }
@@ -108,6 +114,20 @@ std::vector<DrawnMesh> build_meshes(Scene& scene, Report& report, const tinygltf
 double largest_scale(const glm::dmat4& m) {
   return std::max(
       {glm::length(glm::dvec3(m[0])), glm::length(glm::dvec3(m[1])), glm::length(glm::dvec3(m[2]))});
+}
+
+// The scale that all meshes have: of the node above them, else their own, where it is the same for each and
+// so far from 1 that it must be a unit's.
+double shared_scale(const std::vector<DrawnMesh>& drawn, const tinygltf::Model& model,
+                    const std::vector<PlacedNode>& nodes) {
+  constexpr double kOrdinary = 16.0;
+  const auto scale_of = [](const glm::dmat4& m) { return gltf::rounded_scale(largest_scale(m)); };
+  const double above = scale_of(gltf::matrix_above_meshes(model, nodes));
+  if (above > 0.0 && above != 1.0) return above;
+  const double first = drawn.empty() ? 1.0 : scale_of(drawn.front().file_from_mesh);
+  const bool same = std::all_of(drawn.begin(), drawn.end(),
+                                [&](const DrawnMesh& d) { return scale_of(d.file_from_mesh) == first; });
+  return same && first > 0.0 && (first < 1.0 / kOrdinary || first > kOrdinary) ? first : 1.0;
 }
 
 gltf::Placement choose_placement(const Report& report, const Scene& scene,
@@ -127,7 +147,15 @@ gltf::Placement choose_placement(const Report& report, const Scene& scene,
     if (node_at(model, placed).camera >= 0)
       view_distance_m =
           std::max(view_distance_m, glm::length(glm::dvec3(placed.world_from_local[3]) - bounds.center()));
-  return gltf::place_scene(bounds, scale, view_distance_m);
+  return gltf::place_scene(bounds, {shared_scale(drawn, model, nodes), scale}, view_distance_m);
+}
+
+// Whether what a float rounds of its place is seen on a mesh.
+bool is_rounded_away(const Mesh& mesh, const glm::dmat4& matrix) {
+  constexpr double kRounding = 0x1p-24, kSeen = 0.05;
+  const glm::dvec3 half = 0.5 * (glm::dvec3(mesh.bounds_max) - glm::dvec3(mesh.bounds_min));
+  const double size = 2.0 * glm::length(glm::dmat3(matrix) * half);
+  return size > 0.0 && kRounding * glm::length(glm::dvec3(matrix[3])) > kSeen * size;
 }
 
 // Everything the file places, in the scene's own coordinates.
@@ -141,11 +169,18 @@ void place_everything(Scene& scene, Report& report, const gltf::Placement& place
     if (!(largest_scale(matrix) <= 1e18))
       report.fail("S010", d.name + " is stretched by more than 1e18", "scale the node down");
     scene.instances.push_back({d.mesh, glm::mat4(matrix), d.name});
+    if (is_rounded_away(scene.meshes[static_cast<std::size_t>(d.mesh)], matrix))
+      report.warn(
+          "S120",
+          "nodes lie so far apart that a float rounds their places by more than a twentieth of their size",
+          d.name);
   }
   if (as_is) return;
   for (PlacedNode& placed : nodes) placed.world_from_local = scene_from_file * placed.world_from_local;
   scene.origin_m = placement.origin;
   scene.meters_per_unit = 1.0 / placement.scale;
+  scene.units_per_option_m = placement.units_per_option_m;
+  if (placement.within_range) return;
   report.note(
       "S120",
       "the scene lies or extends far beyond a float's precision: it was moved and scaled while loading "
@@ -180,9 +215,14 @@ void add_view_and_light(Scene& scene, Report& report, const gltf::Source& source
   }
   scene.cameras = gltf::build_cameras(report, model, source.cameras, nodes, units_per_m);
   for (Camera& camera : scene.cameras) {
-    if (camera.far_m > 0.0f) continue;
-    camera.far_m = far_plane_m(camera, totals.bounds_min, totals.bounds_max);
-    report.note("S118", "cameras without zfar got a far plane just behind the scene", camera.name);
+    if (!(camera.far_m > 0.0f)) {
+      camera.far_m = far_plane_m(camera, totals.bounds_min, totals.bounds_max);
+      report.note("S118", "cameras without zfar got a far plane just behind the scene", camera.name);
+    }
+    if (depths_run_together(camera, totals.bounds_min, totals.bounds_max))
+      report.warn("S123",
+                  "a camera's near plane is so near that depths in the scene are one number: raise znear",
+                  camera.name);
   }
   if (scene.cameras.empty()) {
     scene.cameras.push_back(framing_camera(totals.bounds_min, totals.bounds_max));
@@ -211,7 +251,8 @@ Scene load(Report& report, ReadContainer&& container, const SceneLoadOptions& op
   // Beside the meshes: loading the image library alone takes 0.2 s.
   std::future<std::vector<Texture>> textures =
       std::async(std::launch::async, [&] { return gltf::build_textures(report, source, set.textures); });
-  const std::vector<DrawnMesh> drawn = build_meshes(scene, report, model, nodes, set, used_meshes);
+  const std::vector<DrawnMesh> drawn =
+      list_drawn(report, source, nodes, build_meshes(scene, report, model, set, used_meshes));
   scene.materials = std::move(set.materials);
   place_everything(scene, report, choose_placement(report, scene, drawn, model, nodes), drawn, nodes);
   add_view_and_light(scene, report, source, nodes, light_names);

@@ -90,11 +90,15 @@ glm::mat4 view_of(const Frame& f) {
   return glm::mat4(view);
 }
 
+constexpr double kBrightest = 1e30;
+
 /// Values that no light has are brought into range, and said.
-void note_odd_values(Report& report, const tinygltf::Light& light, const std::string& where) {
+void note_odd_values(Report& report, const tinygltf::Light& light, const std::string& where, double unit) {
   const bool below_zero = light.intensity < 0.0 || std::any_of(light.color.begin(), light.color.end(),
                                                                [](double channel) { return channel < 0.0; });
   if (below_zero) report.warn("S113", "lights of less than nothing give none", where);
+  if (light.intensity * unit > kBrightest)
+    report.warn("S113", "lights beyond a float's range give less than they say", where);
   if (light.range < 0.0) report.warn("S113", "lights whose range is below zero reach everywhere", where);
   const tinygltf::SpotLight& cone = light.spot;
   const bool in_order = cone.innerConeAngle >= 0.0 && cone.innerConeAngle < cone.outerConeAngle &&
@@ -117,12 +121,13 @@ std::optional<Light> light_of(Report& report, const tinygltf::Light& source, con
     report.warn("S113", "lights of an unknown type are left out", where);
     return std::nullopt;
   }
-  note_odd_values(report, source, where);
   // What arrives falls with the square of the distance, which grows with the units.
   const double unit = light.kind == LightKind::directional ? 1.0 : units_per_m * units_per_m;
-  for (std::size_t i = 0; i < 3; ++i)
-    light.color[static_cast<int>(i)] = static_cast<float>(
-        std::clamp((i < source.color.size() ? source.color[i] : 1.0) * source.intensity * unit, 0.0, 1e9));
+  note_odd_values(report, source, where, unit);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double color = (i < source.color.size() ? source.color[i] : 1.0) * source.intensity;
+    light.color[static_cast<int>(i)] = static_cast<float>(std::clamp(color * unit, 0.0, kBrightest));
+  }
   light.position = glm::vec3(frame.origin);
   light.direction = glm::vec3(-frame.z);
   light.range_m = static_cast<float>(std::clamp(source.range * units_per_m, 0.0, 1e18));
@@ -132,7 +137,16 @@ std::optional<Light> light_of(Report& report, const tinygltf::Light& source, con
   return light;
 }
 
-Camera camera_of(const CameraSpec& source, const Frame& frame, double units_per_m) {
+/// Nothing where the camera's lengths leave float's range beside the scene's size.
+std::optional<Camera> camera_of(const CameraSpec& source, const Frame& frame, double units_per_m) {
+  constexpr double kLeast = 1e-30, kMost = 1e18;
+  const auto fits = [&](double length, double least) {
+    return length * units_per_m >= least && length * units_per_m <= kMost;
+  };
+  if (!fits(source.near, source.orthographic ? 0.0 : kLeast) || !fits(source.far, 0.0) ||
+      (source.orthographic &&
+       !(fits(source.half_height, kLeast) && fits(source.half_height * source.aspect_ratio, kLeast))))
+    return std::nullopt;
   Camera camera;
   camera.view_from_world = view_of(frame);
   camera.orthographic = source.orthographic;
@@ -176,6 +190,23 @@ std::vector<PlacedNode> walk_scene(Report& report, const tinygltf::Model& model)
     placed.push_back(next);
   }
   return placed;
+}
+
+glm::dmat4 matrix_above_meshes(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes) {
+  std::vector<std::size_t> meshes(model.nodes.size(), 0);  // at and below each node
+  std::size_t all = 0;
+  for (auto placed = nodes.rbegin(); placed != nodes.rend(); ++placed) {  // children first
+    const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(placed->node)];
+    std::size_t& count = meshes[static_cast<std::size_t>(placed->node)];
+    if (node.mesh >= 0) ++count, ++all;
+    for (const int child : node.children) count += meshes[static_cast<std::size_t>(child)];
+  }
+  glm::dmat4 lowest(1.0);
+  for (const PlacedNode& placed : nodes)
+    if (all > 0 && meshes[static_cast<std::size_t>(placed.node)] == all &&
+        model.nodes[static_cast<std::size_t>(placed.node)].mesh < 0)
+      lowest = placed.world_from_local;
+  return lowest;
 }
 
 std::vector<NamedLight> build_lights(Report& report, const tinygltf::Model& model,
@@ -225,7 +256,16 @@ std::vector<Camera> build_cameras(Report& report, const tinygltf::Model& model,
                   element("nodes", static_cast<std::size_t>(placed.node)));
       continue;
     }
-    out.push_back(camera_of(spec, *frame, units_per_m));
+    std::optional<Camera> camera = camera_of(spec, *frame, units_per_m);
+    if (!camera) {
+      report.warn("S115",
+                  "a camera is left out: its planes or its height are beyond a float's range beside "
+                  "the scene's size",
+                  element("cameras", index));
+      continue;
+    }
+    if (!spec.remark.empty()) report.warn("S115", spec.remark, element("cameras", index));
+    out.push_back(std::move(*camera));
     out.back().name = !node.name.empty()   ? node.name
                       : !spec.name.empty() ? spec.name
                                            : element("cameras", index);

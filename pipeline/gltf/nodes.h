@@ -18,6 +18,9 @@ struct PlacedNode {
 /// reached twice (a cycle, or two parents) and (S010) where a transformation leaves the range of float.
 std::vector<PlacedNode> walk_scene(Report& report, const tinygltf::Model& model);
 
+/// The transformation of the lowest node that all meshes hang below; 1: there is none.
+glm::dmat4 matrix_above_meshes(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes);
+
 /// `units_per_m`: of the scene, whose coordinates the nodes are in; what the file gives in meters is scaled
 /// by it.
 struct NamedLight {

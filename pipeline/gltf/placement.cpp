@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 namespace hwsim::pipeline::gltf {
 namespace {
@@ -67,20 +69,31 @@ Placement place_mesh(const Box& bounds) {
   return out;
 }
 
-Placement place_scene(const Box& bounds, double largest_scale, double view_distance_m) {
-  constexpr double kLeastM = 0.1, kMostM = 1e5, kFarthestView = 1e12;
+double rounded_scale(double scale) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.5e", scale);
+  return std::strtod(digits, nullptr);
+}
+
+Placement place_scene(const Box& bounds, const DrawnScale& drawn, double view_distance_m) {
+  constexpr double kLeast = 0.1, kMost = 1e5, kMostInMeters = 1e3, kFarthestView = 1e12;
+  const double unit = drawn.shared;
+  const double meters = bounds.diagonal(), diagonal = meters / unit;
+  const auto fits = [&](double d) { return d >= kLeast && d <= kMost; };
+  int exponent = 0;
+  if (diagonal > 0.0 && !fits(diagonal)) {
+    exponent = unit_exponent(diagonal);
+    if (drawn.largest > 0.0)
+      if (const int undo = unit_exponent(drawn.largest / unit); fits(times_power_of_ten(diagonal, undo)))
+        exponent = undo;
+    if (const double view = view_distance_m / unit; view > 0.0)
+      exponent = std::min(exponent, static_cast<int>(std::floor(std::log10(kFarthestView / view))));
+  }
   Placement out;
   out.origin = round_origin(bounds);
-  const double diagonal = bounds.diagonal();
-  const auto fits = [&](double d) { return d >= kLeastM && d <= kMostM; };
-  if (!(diagonal > 0.0) || fits(diagonal)) return out;
-  int exponent = unit_exponent(diagonal);
-  if (largest_scale > 0.0)
-    if (const int undo = unit_exponent(largest_scale); fits(times_power_of_ten(diagonal, undo)))
-      exponent = undo;
-  if (view_distance_m > 0.0)
-    exponent = std::min(exponent, static_cast<int>(std::floor(std::log10(kFarthestView / view_distance_m))));
-  out.scale = times_power_of_ten(1.0, exponent);
+  out.scale = times_power_of_ten(1.0, exponent) / unit;
+  out.within_range = exponent == 0 && out.origin == glm::dvec3(0.0);
+  if (meters >= kLeast && meters <= kMostInMeters) out.units_per_option_m = out.scale;
   return out;
 }
 

@@ -23,6 +23,8 @@ struct Box {
 struct Placement {
   glm::dvec3 origin{0.0};
   double scale = 1.0;
+  bool within_range = true;         ///< it was before: at most the nodes' shared scale is undone
+  double units_per_option_m = 1.0;  ///< Scene::units_per_option_m
   bool is_identity() const { return origin == glm::dvec3(0.0) && scale == 1.0; }
   glm::dmat4 matrix() const;          ///< from old to new
   glm::dmat4 inverse_matrix() const;  ///< from new to old
@@ -32,11 +34,20 @@ struct Placement {
 /// its diagonal leaves 1e-5 to 1e7.
 Placement place_mesh(const Box& bounds);
 
-/// For the whole scene: moved likewise, scaled where its diagonal leaves 0.1 m to 1e5 m. What lies inside
-/// keeps its bits. `largest_scale`: the largest factor by which a node draws a mesh; the first choice is to
-/// undo it. `view_distance_m`: of the farthest camera from the center, which must stay inside float's range
-/// too.
-Placement place_scene(const Box& bounds, double largest_scale, double view_distance_m);
+/// By how much the nodes of a file enlarge what they draw.
+struct DrawnScale {
+  double shared = 1.0;   ///< all of them, to six digits; 1: nothing in common
+  double largest = 0.0;  ///< one of them; 0: nothing is drawn
+};
+
+/// To the six digits that are left of a scale in a matrix of floats.
+double rounded_scale(double scale);
+
+/// For the whole scene: what all nodes share of their scales is undone, so that a scene has the same numbers
+/// in whatever unit it was written. It is moved as a mesh is, and scaled further where its diagonal leaves
+/// 0.1 to 1e5; the first choice is to undo the largest scale. What lies inside keeps its bits.
+/// `view_distance_m`: of the farthest camera from the center, which must stay inside float's range too.
+Placement place_scene(const Box& bounds, const DrawnScale& drawn, double view_distance_m);
 
 Box bounds_of(const std::vector<glm::vec3>& positions);
 

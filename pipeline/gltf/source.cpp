@@ -17,15 +17,19 @@ std::string first_line(const std::string& text) {
 
 bool is_unbacked(const json& accessor) { return !accessor.contains("bufferView"); }
 
-// What the parser is given: no buffers, images and cameras, which are read by this project's own code, and
-// nothing that is ignored anyway, so that a mistake in an animation costs no scene. The parser wants a buffer
-// view of accessors that are zeros or sparse alone: they get the first, and lose it again after parsing.
+// What the parser is given: no buffers, images, cameras and skins, which are read by this project's own code,
+// and nothing that is ignored anyway, so that a mistake in an animation costs no scene. The parser wants a
+// buffer view of accessors that are zeros or sparse alone: they get the first, and lose it again after
+// parsing.
 std::string text_for_parser(json&& root) {
   for (const char* key : {"buffers", "images", "cameras", "animations", "skins", "extras"}) root.erase(key);
   if (root.contains("extensions")) {
     json kept = json::object();
-    if (root["extensions"].contains("KHR_lights_punctual"))
+    if (root["extensions"].contains("KHR_lights_punctual")) {
       kept["KHR_lights_punctual"] = root["extensions"]["KHR_lights_punctual"];
+      for (json& light : kept["KHR_lights_punctual"]["lights"])  // the parser refuses the file without it
+        if (light["type"] == "spot" && !light.contains("spot")) light["spot"] = json::object();
+    }
     root["extensions"] = std::move(kept);
   }
   if (root.contains("accessors")) {
@@ -76,6 +80,7 @@ Source read_source(Report& report, const Container& container, const SceneLoadOp
   Source source;
   source.images = read_images(files, root, buffers);
   source.cameras = read_cameras(root);
+  source.skins = read_skins(root);
   source.has_animations = root.contains("animations") && !root["animations"].empty();
   source.model = parse(report, std::move(root));
   // Moved, not copied: what the images point at stays where it is.

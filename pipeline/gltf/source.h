@@ -10,6 +10,7 @@
 #include "pipeline/gltf/gltf_loader.h"
 #include "pipeline/gltf/images.h"
 #include "pipeline/gltf/report.h"
+#include "pipeline/gltf/skins.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
@@ -20,8 +21,9 @@ namespace hwsim::pipeline::gltf {
 
 struct Source {
   tinygltf::Model
-      model;  ///< buffers filled, but for those that nothing drawn refers to; no images, no cameras
+      model;  ///< buffers filled, but for those that nothing drawn refers to; no images, cameras, skins
   std::vector<CameraSpec> cameras;
+  std::vector<SkinSpec> skins;
   std::vector<EncodedImage> images;
   bool has_animations = false;
   std::string content_hash;

@@ -10,6 +10,9 @@ Camera framing_camera(const glm::vec3& bounds_min, const glm::vec3& bounds_max);
 /// A far plane just behind the box, for cameras whose file gives none.
 float far_plane_m(const Camera& camera, const glm::vec3& bounds_min, const glm::vec3& bounds_max);
 
+/// Whether depths beside each other in the box are one number to a float: the near plane is too near.
+bool depths_run_together(const Camera& camera, const glm::vec3& bounds_min, const glm::vec3& bounds_max);
+
 /// A white sun that lights white to 1 and casts shadows, from the upper left in front.
 Light default_sun();
 

@@ -13,6 +13,14 @@ glm::vec3 box_corner(const glm::vec3& low, const glm::vec3& high, int i) {
   return {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z};
 }
 
+// The distance of the box's farthest corner, along the view.
+float farthest_m(const Camera& camera, const glm::vec3& low, const glm::vec3& high) {
+  float farthest = 0.0f;
+  for (int i = 0; i < 8; ++i)
+    farthest = std::max(farthest, -(camera.view_from_world * glm::vec4(box_corner(low, high, i), 1.0f)).z);
+  return farthest;
+}
+
 void add_instance(SceneStats& out, const Scene& scene, const Mesh& mesh) {
   for (const Mesh::Part& part : mesh.parts) {
     const std::uint64_t triangles = part.index_count / 3;
@@ -102,12 +110,16 @@ Camera framing_camera(const glm::vec3& bounds_min, const glm::vec3& bounds_max) 
 }
 
 float far_plane_m(const Camera& camera, const glm::vec3& bounds_min, const glm::vec3& bounds_max) {
-  float far = 10.0f * camera.near_m;
-  for (int i = 0; i < 8; ++i) {
-    const glm::vec4 corner = camera.view_from_world * glm::vec4(box_corner(bounds_min, bounds_max, i), 1.0f);
-    far = std::max(far, -corner.z * 1.01f);
-  }
-  return far;
+  return std::max(10.0f * camera.near_m, 1.01f * farthest_m(camera, bounds_min, bounds_max));
+}
+
+bool depths_run_together(const Camera& camera, const glm::vec3& bounds_min, const glm::vec3& bounds_max) {
+  constexpr double kRounding = 0x1p-24, kOfTheScene = 0.1;
+  if (camera.orthographic) return false;
+  // Depth is 1 - near/z: a step of it is z^2/near.
+  const auto z = static_cast<double>(std::min(farthest_m(camera, bounds_min, bounds_max), camera.far_m));
+  const double step = kRounding * z * z / static_cast<double>(camera.near_m);
+  return step > kOfTheScene * glm::length(glm::dvec3(bounds_max) - glm::dvec3(bounds_min));
 }
 
 Light default_sun() {

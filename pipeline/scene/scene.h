@@ -162,6 +162,9 @@ struct Scene {
   /// and how many of the file's meters a unit is. Lengths "in meters" are in these units everywhere else.
   glm::dvec3 origin_m{0.0};
   double meters_per_unit = 1.0;
+  /// What a meter of a technique's option is here. A scene of 0.1 m to 1 km is taken to be in meters;
+  /// any other to be in a unit of its own, in which its meshes are modeled.
+  double units_per_option_m = 1.0;
   double exposure = 1.0;           ///< by which the file's lights were multiplied (gltf/exposure.h)
   std::uint64_t memory_bytes = 0;  ///< that loading took at most, as estimated beforehand
   std::vector<Diagnostic> notes;   ///< what the loader ignored, generated or clamped

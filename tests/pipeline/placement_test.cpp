@@ -1,6 +1,7 @@
 // Scenes far from the origin, tiny and huge ones: drawn as if they stood at the origin in meters.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "pipeline/gltf/gltf_loader.h"
@@ -99,6 +100,80 @@ TEST_F(ScenePlacement, TinyAndHugeScenesHaveTheNumbersOfOneInMeters) {
     EXPECT_FLOAT_EQ(there.lights[0].range_m, 30.0f) << unit;
     EXPECT_NEAR(there.meters_per_unit / unit, 1.0, 1e-12);
   }
+}
+
+// Within a float's range too: what a file's nodes share of their scales is its unit, and no size.
+TEST_F(ScenePlacement, AnyUnitGivesTheVeryNumbersOfAnother) {
+  const Scene here = load(scene_below(json::object()));
+  for (const double unit : {1e-3, 0.01, 0.0254, 0.3048, 3.0, 100.0, 0x1p13, 1e4})
+    for (const double far : {0.0, 5e6}) {
+      if (far > 0.0 && unit > 1e3) continue;  // no round number beside a scene as large
+      const Scene there =
+          load(scene_below({{"scale", {unit, unit, unit}}, {"translation", {far, 0, -far}}}, unit));
+      EXPECT_EQ(there.instances[0].world_from_local, here.instances[0].world_from_local) << unit;
+      EXPECT_EQ(there.cameras[0].view_from_world, here.cameras[0].view_from_world) << unit;
+      EXPECT_FLOAT_EQ(there.cameras[0].near_m, here.cameras[0].near_m) << unit;
+      EXPECT_DOUBLE_EQ(there.meters_per_unit, unit);
+    }
+}
+
+TEST_F(ScenePlacement, AScaleOfEachNodeIsAUnitWhereAllHaveIt) {
+  const auto two_nodes = [&](double first, double second) {
+    GlbBuilder glb = test::square_glb();
+    glb.root["nodes"] = {{{"mesh", 0}, {"scale", {first, first, first}}},
+                         {{"mesh", 0}, {"scale", {second, second, second}}, {"translation", {first, 0, 0}}}};
+    glb.root["scenes"][0]["nodes"] = {0, 1};
+    return load(glb);
+  };
+  EXPECT_DOUBLE_EQ(two_nodes(0.01, 0.01).meters_per_unit, 0.01);
+  EXPECT_EQ(two_nodes(0.01, 0.01).instances[0].world_from_local, glm::mat4(1.0f));
+  EXPECT_EQ(two_nodes(2, 2).meters_per_unit, 1.0);
+  EXPECT_EQ(two_nodes(100, 50).meters_per_unit, 1.0);
+}
+
+// Techniques' options in meters keep their meaning where the scene's meters have one.
+TEST_F(ScenePlacement, MetersOfOptionsAreTheScenes) {
+  const auto option_of = [&](double unit) {
+    return load(scene_below({{"scale", {unit, unit, unit}}}, unit)).units_per_option_m;
+  };
+  EXPECT_EQ(option_of(1.0), 1.0);
+  EXPECT_DOUBLE_EQ(option_of(0.1), 10.0);
+  EXPECT_DOUBLE_EQ(option_of(100.0), 0.01);
+  EXPECT_EQ(option_of(1e4), 1.0);
+  EXPECT_EQ(option_of(1e-3), 1.0);
+}
+
+TEST_F(ScenePlacement, ACameraOfASceneOfAnySizeIsKept) {
+  for (const double unit : {1e-30, 1e-12, 1e13}) {
+    const Scene there = load(scene_below({{"scale", {unit, unit, unit}}}, unit));
+    ASSERT_EQ(there.cameras.size(), 1u) << unit;
+    EXPECT_EQ(there.cameras[0].name, "eye") << unit;
+    EXPECT_NEAR(there.cameras[0].view_from_world[3].z, -12.0f, 1e-5f) << unit;
+  }
+}
+
+TEST_F(ScenePlacement, ACameraBesideWhoseLengthsTheSceneVanishesIsLeftOut) {
+  GlbBuilder glb = scene_below(json::object());
+  glb.root["cameras"][0]["perspective"]["zfar"] = 1e25;
+  const Scene scene = load(glb);
+  EXPECT_EQ(scene.cameras.at(0).name, "default");
+  EXPECT_EQ(std::count_if(scene.notes.begin(), scene.notes.end(),
+                          [](const Diagnostic& d) { return d.code == "S115"; }),
+            1);
+}
+
+TEST_F(ScenePlacement, PartsThatAFloatWouldRoundAwayAreSaid) {
+  const auto warned = [&](double distance) {
+    GlbBuilder glb = test::square_glb();
+    glb.root["nodes"].push_back({{"mesh", 0}, {"translation", {distance, 0, 0}}});
+    glb.root["scenes"][0]["nodes"] = {0, 1};
+    const Scene scene = load(glb);
+    return std::any_of(scene.notes.begin(), scene.notes.end(), [](const Diagnostic& d) {
+      return d.code == "S120" && d.severity == Severity::warning;
+    });
+  };
+  EXPECT_FALSE(warned(1e5));
+  EXPECT_TRUE(warned(5e6));
 }
 
 TEST_F(ScenePlacement, HugeVerticesUnderATinyScaleMeetInTheMiddle) {

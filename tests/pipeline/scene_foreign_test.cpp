@@ -225,7 +225,45 @@ TEST_F(ForeignScene, ASkinnedMeshDoesNotMoveWithItsNode) {
   glb.root["scenes"][0]["nodes"] = {1, 2};
   const Scene scene = load(glb);
   EXPECT_EQ(scene.instances.at(0).world_from_local, glm::mat4(1.0f));
-  EXPECT_TRUE(has_note(scene, "S110", "nodes do not move them"));
+  EXPECT_TRUE(has_note(scene, "S110", "the meshes' nodes do not"));
+}
+
+// An armature in centimeters below a node of a hundredth, and a mesh as modeled in them.
+GlbBuilder skinned_square(double second_joint_x) {
+  GlbBuilder glb = test::square_glb();
+  const std::vector<float> inverse = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1,   // the first joint's
+                                      1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -5, 0, 0, 1};  // and the second
+  const int matrices = glb.add_accessor(inverse, 5126, "MAT4", 16);
+  glb.root["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"scale", {7, 7, 7}}},
+                       {{"name", "armature"}, {"scale", {0.01, 0.01, 0.01}}, {"children", {2}}},
+                       {{"name", "hip"}, {"children", {3}}},
+                       {{"name", "knee"}, {"translation", {second_joint_x, 0, 0}}}};
+  glb.root["skins"] = {{{"joints", {2, 3.0}}, {"inverseBindMatrices", matrices}}};
+  glb.root["scenes"][0]["nodes"] = {0, 1};
+  return glb;
+}
+
+TEST_F(ForeignScene, JointsPlaceASkinnedMesh) {
+  const Scene scene = load(skinned_square(5));
+  const SceneStats s = stats(scene);
+  EXPECT_NEAR((s.bounds_max.x - s.bounds_min.x) * scene.meters_per_unit, 0.01, 1e-8);
+  EXPECT_FALSE(has_note(scene, "S110", "not bent"));
+  EXPECT_TRUE(has_note(load(skinned_square(6)), "S110", "not bent"));
+}
+
+TEST_F(ForeignScene, AWrongSkinCostsNoScene) {
+  for (const json& skin : std::vector<json>{json::object(),
+                                            {{"joints", {77}}},
+                                            {{"joints", {0.5}}},
+                                            {{"joints", "all"}},
+                                            {{"joints", {2}}, {"inverseBindMatrices", 0}},
+                                            {{"joints", {2, 3, 1}}, {"inverseBindMatrices", 3}}}) {
+    GlbBuilder glb = skinned_square(5);
+    glb.root["skins"] = {skin};
+    const Scene scene = load(glb);
+    EXPECT_EQ(stats(scene).drawn_triangles, 2u) << skin;
+    EXPECT_TRUE(has_note(scene, "S110", "drawn as modeled")) << skin;
+  }
 }
 
 TEST_F(ForeignScene, ARadiusOfAnotherProgramIsIgnored) {
@@ -271,6 +309,40 @@ TEST_F(ForeignScene, AWrongCameraIsLeftOutAndNotTheFile) {
   const Scene scene = load(two_cameras(good));
   ASSERT_EQ(scene.cameras.size(), 2u);
   EXPECT_EQ(scene.cameras[1].aspect_ratio, 3.0f);
+}
+
+TEST_F(ForeignScene, AnAspectRatioThatIsNoneIsSaid) {
+  for (const json& aspect : std::vector<json>{0, -1.5, 1e-9, 1e9, "wide", nullptr}) {
+    const Scene scene =
+        load(two_cameras({{"type", "perspective"},
+                          {"perspective", {{"yfov", 0.8}, {"znear", 0.1}, {"aspectRatio", aspect}}}}));
+    ASSERT_EQ(scene.cameras.size(), 2u) << aspect;
+    EXPECT_EQ(scene.cameras[1].aspect_ratio, 0.0f);
+    EXPECT_TRUE(has_note(scene, "S115", "perspective.aspectRatio is " + aspect.dump())) << aspect;
+    EXPECT_TRUE(has_note(scene, "S115", "(cameras[1])")) << aspect;
+  }
+}
+
+TEST_F(ForeignScene, ANearPlaneThatLeavesNoDepthIsSaid) {
+  const auto with_near = [&](double near) {
+    GlbBuilder glb =
+        two_cameras({{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", near}}}});
+    glb.root["nodes"][2]["translation"] = {0, 0, 4};
+    return load(glb);
+  };
+  EXPECT_TRUE(has_note(with_near(1e-9), "S123", "near plane"));
+  EXPECT_FALSE(has_note(with_near(1e-4), "S123", "near plane"));
+}
+
+TEST_F(ForeignScene, ASpotLightNeedsNoAngles) {
+  GlbBuilder glb = test::square_glb();
+  glb.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  glb.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"intensity", 2}}};
+  const Scene scene = load(glb);
+  ASSERT_EQ(scene.lights.size(), 1u);
+  EXPECT_EQ(scene.lights[0].kind, LightKind::spot);
+  EXPECT_FLOAT_EQ(scene.lights[0].outer_cone_rad, 0.785398f);
+  EXPECT_FALSE(has_note(scene, "S113", "spot"));
 }
 
 TEST_F(ForeignScene, TheCameraFrameIsSeenWhole) {
