@@ -16,6 +16,7 @@
 #include "cli/terminal/answer.h"
 #include "lab/base/messages.h"
 #include "lab/point/simulate.h"
+#include "pipeline/base/file_io.h"
 
 namespace hwsim::cli {
 namespace {
@@ -113,7 +114,8 @@ ExitStatus run_program(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return report_shortage("out of memory", context.log);
   } catch (const std::filesystem::filesystem_error& error) {
-    return report(InputError(file_problem(error)), context.log);
+    return report(InputError(file_problem(error), pipeline::write_failure_status(error.code().value())),
+                  context.log);
   } catch (const std::system_error& error) {  // a thread that the system does not give
     return report_shortage(error.what(), context.log);
   } catch (const std::exception& error) {

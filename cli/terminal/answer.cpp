@@ -45,6 +45,14 @@ void write_rows(const lab::RowSource& rows, OutputFormat format, const lab::Take
   }
 }
 
+// What was asked for is lost: the run has failed, whatever the reason.
+[[noreturn]] void fail_to_write(int reason) {
+  throw InputError(
+      lab::problem("U010", std::string("cannot write to standard output: ") + std::strerror(reason), "",
+                   "send it to a file or a terminal that can be written and has space"),
+      ExitStatus::run_failed);
+}
+
 }  // namespace
 
 void write_output(std::string_view text) {
@@ -55,8 +63,7 @@ void write_output(std::string_view text) {
     else if (errno == EPIPE)
       return;
     else if (errno != EINTR)
-      lab::fail("U010", "cannot write to standard output: " + std::string(std::strerror(errno)), "",
-                "send it to a file or a terminal that can be written and has space");
+      fail_to_write(errno);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "lab/base/messages.h"
 #include "lab/results/folder_exchange.h"
 #include "pipeline/base/file_descriptor.h"
+#include "pipeline/base/file_io.h"
 
 namespace hwsim::lab {
 namespace {
@@ -19,7 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void fail_to_write(const fs::path& path, const std::error_code& error) {
-  fail("U010", "cannot write `" + path.string() + "`: " + error.message());
+  throw InputError(problem("U010", "cannot write `" + path.string() + "`: " + error.message()),
+                   pipeline::write_failure_status(error.value()));
 }
 
 fs::path default_place(const std::string& id_source) {

@@ -73,8 +73,13 @@ Database::Database(const std::string& path, Mode mode)
 }
 
 void Database::fail() const {
-  hwsim::lab::fail("U021", "the database `" + path_ + "`: " + sqlite3_errmsg(handle_.get()), "",
-                   "a database that `hwsim sweep` wrote, in a folder that can be written");
+  const int code = sqlite3_errcode(handle_.get());
+  const bool out_of_space = code == SQLITE_FULL || code == SQLITE_IOERR;
+  throw InputError(
+      problem("U021", "the database `" + path_ + "`: " + sqlite3_errmsg(handle_.get()), "",
+              out_of_space ? "a disk with space; the finished points are in the database"
+                           : "a database that `hwsim sweep` wrote, in a folder that can be written"),
+      out_of_space ? ExitStatus::run_failed : ExitStatus::invalid_input);
 }
 
 void Database::require(int code) const {

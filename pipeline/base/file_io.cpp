@@ -9,17 +9,20 @@
 #include <cstring>
 #include <string>
 
-#include "hwsim/base/diagnostics.h"
-
 namespace hwsim::pipeline {
 namespace {
 
-[[noreturn]] void fail(const std::string& code, const std::string& message, const std::string& path,
-                       const std::string& help = {}) {
+[[noreturn]] void fail(const std::string& code, const std::string& message, const std::string& path) {
   Diagnostic d{.code = code, .message = message};
   d.place.file = path;
-  d.help = help;
   throw InputError(d);
+}
+
+[[noreturn]] void fail_to_write(const std::string& code, int reason, const std::string& path) {
+  Diagnostic d{.code = code, .message = std::string("cannot write the file: ") + std::strerror(reason)};
+  d.place.file = path;
+  d.help = "check that the folder exists, may be written and has space";
+  throw InputError(d, write_failure_status(reason));
 }
 
 std::string reason() { return std::strerror(errno); }
@@ -47,16 +50,15 @@ using Place = int (*)(const char* from, const char* to);
 
 void write_file(const std::string& path, const std::string& code, const std::vector<ByteSpan>& pieces,
                 Place place) {
-  const std::string help = "check that the folder exists, may be written and has space";
   std::string unfinished;
   FileDescriptor file = open_unfinished(path, unfinished);
-  if (!file.is_open()) fail(code, "cannot write the file: " + reason(), path, help);
+  if (!file.is_open()) fail_to_write(code, errno, path);
   const bool written = write_all(file.get(), pieces) && ::fsync(file.get()) == 0 &&
                        place(unfinished.c_str(), path.c_str()) == 0 && file.close();
   if (written) return;
-  const std::string why = reason();
+  const int why = errno;
   ::unlink(unfinished.c_str());
-  fail(code, "cannot write the file: " + why, path, help);
+  fail_to_write(code, why, path);
 }
 
 int link_and_unlink(const char* from, const char* to) {
@@ -78,6 +80,11 @@ FileDescriptor open_unfinished(const std::string& target, std::string& path) {
       return file;
   }
   return FileDescriptor();
+}
+
+ExitStatus write_failure_status(int reason) {
+  const bool out_of_space = reason == ENOSPC || reason == EDQUOT || reason == EFBIG || reason == EIO;
+  return out_of_space ? ExitStatus::run_failed : ExitStatus::invalid_input;
 }
 
 std::vector<std::uint8_t> read_file(const std::string& path, const std::string& code, std::size_t max_bytes) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "hwsim/base/diagnostics.h"
 #include "pipeline/base/file_descriptor.h"
 
 namespace hwsim::pipeline {
@@ -16,6 +17,10 @@ using ByteSpan = std::span<const std::uint8_t>;
 /// The whole file. Throws InputError (code `code`) with the system's reason when it cannot be read or is
 /// larger than `max_bytes`.
 std::vector<std::uint8_t> read_file(const std::string& path, const std::string& code, std::size_t max_bytes);
+
+/// The exit status of a program that could not write for this reason (errno). A disk that is full or broken
+/// fails the run; a folder that is missing or closed is a mistake in what was asked for.
+ExitStatus write_failure_status(int reason);
 
 /// Writes beside the target, waits until the disk has it, and renames, so that a file that exists is complete
 /// even after a loss of power. Throws InputError (code `code`).
