@@ -4,6 +4,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -91,16 +92,28 @@ bool read_rgba(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeD
   return true;
 }
 
+// One channel into every fourth float. OpenEXR's whole numbers are what they say, as its own library
+// converts them; OIIO would take them for fractions of 2^32, which is black.
+bool read_channel(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channel, float* to) {
+  constexpr OIIO::stride_t kPixel = 4 * static_cast<OIIO::stride_t>(sizeof(float));
+  if (spec.channelformat(channel) != OIIO::TypeDesc::UINT32)
+    return input.read_image(0, 0, channel, channel + 1, OIIO::TypeDesc::FLOAT, to, kPixel);
+  static_assert(sizeof(std::uint32_t) == sizeof(float));
+  if (!input.read_image(0, 0, channel, channel + 1, OIIO::TypeDesc::UINT32, to, kPixel)) return false;
+  const auto count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
+  for (std::size_t i = 0; i < count; ++i)
+    to[4 * i] = static_cast<float>(std::bit_cast<std::uint32_t>(to[4 * i]));
+  return true;
+}
+
 // Each channel from where its name is; missing colors are 0, missing alpha is 1.
 bool read_named(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const Channels& channels, float* rgba) {
   const auto count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
   for (int c = 0; c < 4; ++c) {
-    const int from = channels.rgba[c];
-    if (from < 0)
+    if (const int from = channels.rgba[c]; from < 0)
       for (std::size_t i = 0; i < count; ++i)
         rgba[4 * i + static_cast<std::size_t>(c)] = c == 3 ? 1.0f : 0.0f;
-    else if (!input.read_image(0, 0, from, from + 1, OIIO::TypeDesc::FLOAT, rgba + c,
-                               4 * static_cast<OIIO::stride_t>(sizeof(float))))
+    else if (!read_channel(input, spec, from, rgba + c))
       return false;
   }
   return true;

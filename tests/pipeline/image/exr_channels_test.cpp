@@ -14,17 +14,23 @@
 namespace hwsim::pipeline {
 namespace {
 
+enum class Type : std::uint8_t { whole, half, real };  // as OpenEXR numbers them
+
 // An uncompressed file of one pixel; channel names must be sorted, as OpenEXR wants them. Channel i holds
-// (i + 1) / 8.
+// (i + 1) / 8, or i + 1 in whole numbers.
 class ExrBytes {
  public:
-  explicit ExrBytes(const std::vector<std::string>& channels) {
+  explicit ExrBytes(const std::vector<std::string>& channels, std::vector<Type> types = {}) {
+    types.resize(channels.size(), Type::real);
     for (const std::uint32_t v : {20000630u, 2u}) word(v);
     std::vector<std::uint8_t> list;
     std::swap(list, bytes_);
-    for (const std::string& name : channels) {
-      text(name);
-      for (const std::uint32_t v : {2u, 0u, 1u, 1u}) word(v);  // floats, every pixel
+    std::uint32_t line_bytes = 0;
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      text(channels[i]);
+      for (const std::uint32_t v : {static_cast<std::uint32_t>(types[i]), 0u, 1u, 1u})
+        word(v);  // every pixel
+      line_bytes += types[i] == Type::half ? 2 : 4;
     }
     bytes_.push_back(0);
     std::swap(list, bytes_);
@@ -40,9 +46,8 @@ class ExrBytes {
     word(static_cast<std::uint32_t>(bytes_.size() + 8));  // where the only line lies
     word(0);
     word(0);
-    word(static_cast<std::uint32_t>(4 * channels.size()));
-    for (std::size_t i = 0; i < channels.size(); ++i)
-      word(std::bit_cast<std::uint32_t>(static_cast<float>(i + 1) / 8.0f));
+    word(line_bytes);
+    for (std::size_t i = 0; i < channels.size(); ++i) value(static_cast<std::uint32_t>(i + 1), types[i]);
   }
 
   std::string write(const std::string& path) const {
@@ -52,6 +57,16 @@ class ExrBytes {
   }
 
  private:
+  void value(std::uint32_t i, Type type) {
+    const auto real = std::bit_cast<std::uint32_t>(static_cast<float>(i) / 8.0f);
+    if (type == Type::half) {  // a float's exponent and the head of its mantissa
+      const std::uint32_t half = ((real >> 23) - 112) << 10 | (real >> 13 & 0x3ff);
+      bytes_.push_back(static_cast<std::uint8_t>(half));
+      bytes_.push_back(static_cast<std::uint8_t>(half >> 8));
+    } else {
+      word(type == Type::whole ? i : real);
+    }
+  }
   void word(std::uint32_t v) {
     for (int shift = 0; shift < 32; shift += 8) bytes_.push_back(static_cast<std::uint8_t>(v >> shift));
   }
@@ -81,6 +96,20 @@ TEST(ExrChannels, AreFoundByName) {
   EXPECT_EQ(pixel_of({"Y"}), glm::vec4(0.125f, 0.125f, 0.125f, 1));
   EXPECT_EQ(pixel_of({"AlbedoX", "B", "Depth", "G", "R", "Z"}), glm::vec4(0.625f, 0.5f, 0.25f, 1));
   EXPECT_EQ(pixel_of({"beauty.B", "beauty.G", "beauty.R", "depth.Z"}), glm::vec4(0.375f, 0.25f, 0.125f, 1));
+}
+
+TEST(ExrChannels, MayBeOfAnyType) {
+  const std::string path = testing::scratch_folder("exr_types") + "/a.exr";
+  const auto pixel_of = [&](const std::vector<std::string>& channels, const std::vector<Type>& types) {
+    return read_image(ExrBytes(channels, types).write(path)).pixels.at(0);
+  };
+  EXPECT_EQ(pixel_of({"B", "G", "R"}, {Type::whole, Type::whole, Type::whole}), glm::vec4(3, 2, 1, 1));
+  EXPECT_EQ(pixel_of({"A", "B", "G", "R"}, {Type::whole, Type::half, Type::whole, Type::real}),
+            glm::vec4(0.5f, 3, 0.25f, 1));
+  EXPECT_EQ(pixel_of({"Y"}, {Type::whole}), glm::vec4(1, 1, 1, 1));
+  EXPECT_EQ(pixel_of({"Y"}, {Type::half}), glm::vec4(0.125f, 0.125f, 0.125f, 1));
+  EXPECT_EQ(pixel_of({"B", "G", "R", "id"}, {Type::half, Type::half, Type::half, Type::whole}),
+            glm::vec4(0.375f, 0.25f, 0.125f, 1));
 }
 
 TEST(ExrChannels, AreListedWhereNoneIsAColor) {
