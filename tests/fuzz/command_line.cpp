@@ -6,17 +6,17 @@
 namespace {
 using namespace hwsim;
 
-void plan(const cli::RunOptions& options) {
+void plan(const cli::RunArguments& options) {
   static lab::Lab lab;
   cli::plan_of(options, lab);
 }
-void plan(const cli::SweepOptions& options) {
-  plan(static_cast<const cli::RunOptions&>(options));
+void plan(const cli::SweepArguments& options) {
+  plan(static_cast<const cli::RunArguments&>(options));
   if (options.shard) lab::parse_shard(*options.shard);
 }
-void plan(const cli::ReferenceOptions& options) { cli::view_of(options.view); }
-void plan(const cli::ShowOptions& options) { cli::parse_sets(options.sets); }
-void plan(const cli::ConfigOptions& options) { cli::parse_sets(options.sets); }
+void plan(const cli::ReferenceArguments& options) { cli::view_of(options.view); }
+void plan(const cli::ShowArguments& options) { cli::parse_sets(options.sets); }
+void plan(const cli::ConfigArguments& options) { cli::parse_sets(options.sets); }
 template <class Other>
 void plan(const Other&) {}
 

@@ -72,7 +72,9 @@ void look_at(const std::string& path) {
   lab::write_csv(rows, take);
   lab::write_json(rows, take);
   lab::write_markdown(rows, take);
-  lab::write_text(rows, take);
+  std::string shown;
+  lab::write_text(rows, [&](std::string_view text) { shown += text; });
+  fuzz::require(printable(shown) == shown, "a table is safe for a terminal");
 }
 
 }  // namespace
