@@ -5,6 +5,15 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace hwsim::pipeline {
+namespace {
+
+// A turn alone: a step back along the light would be one meter in a scene of any size.
+glm::mat4 turned_to(const glm::vec3& to_light) {
+  const glm::vec3 up = std::fabs(to_light.y) > 0.99f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
+  return glm::lookAt(glm::vec3(0.0f), -to_light, up);
+}
+
+}  // namespace
 
 const Light* shadow_caster(const Scene& scene) {
   const auto caster = std::find_if(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
@@ -15,8 +24,7 @@ const Light* shadow_caster(const Scene& scene) {
 
 glm::mat4 shadow_clip_from_world(const Scene& scene, const glm::vec3& to_light) {
   const SceneStats s = stats(scene);
-  const glm::vec3 up = std::fabs(to_light.y) > 0.99f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
-  const glm::mat4 view = glm::lookAt(to_light, glm::vec3(0.0f), up);
+  const glm::mat4 view = turned_to(to_light);
   glm::vec3 low(1e30f), high(-1e30f);
   for (int corner = 0; corner < 8; ++corner) {
     const glm::vec3 p((corner & 1) != 0 ? s.bounds_max.x : s.bounds_min.x,
@@ -26,7 +34,11 @@ glm::mat4 shadow_clip_from_world(const Scene& scene, const glm::vec3& to_light) 
     low = glm::min(low, v);
     high = glm::max(high, v);
   }
-  const glm::vec3 margin = 0.01f * (high - low) + glm::vec3(1e-3f);
+  // Shares of the scene's size, not meters: a scene in other units has the same texels. A flat one, seen
+  // along itself, needs a view as well.
+  const glm::vec3 sides = high - low;
+  const float longest = std::max({sides.x, sides.y, sides.z});
+  const glm::vec3 margin = glm::max(0.01f * sides, glm::vec3(longest > 0.0f ? 1e-4f * longest : 1.0f));
   low -= margin;
   high += margin;
   return glm::ortho(low.x, high.x, low.y, high.y, -high.z, -low.z) * view;
