@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "lab/base/messages.h"
+#include "lab/request/image_input.h"
 #include "lab/studies/published_runs.h"
 
 namespace hwsim::lab {
@@ -22,6 +23,7 @@ class Fork : public RunSink {
     first_.point(point, run);
     if (second_) second_->point(point, run);
   }
+  bool takes_failures() const override { return first_.takes_failures(); }
   void failed(const algos::TechniqueChoice& technique, const GpuConfig& gpu,
               const InputError& error) override {
     first_.failed(technique, gpu, error);
@@ -129,6 +131,9 @@ Comparison Lab::compare(const Request& request, const std::vector<Variation>& va
 const SceneSummary& Lab::scene(const View& view) { return session_->scene(view).summary(); }
 
 const ReferenceImage& Lab::reference(const View& view, int samples) {
+  if (is_image_file(view.scene))
+    fail("U030", "a ray-traced reference has no meaning for the image `" + view.scene + "`", "",
+         "a scene: a glTF file, or a name of `hwsim list scenes`");
   const StageProgress progress(session_->observer(), 1);
   return session_->reference(session_->scene(view), samples,
                              [&](double done, const std::string& what) { progress.update(done, what); });

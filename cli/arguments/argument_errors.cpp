@@ -57,6 +57,13 @@ std::vector<FlagInfo> flags_of(const CLI::App& app) {
 
 namespace {
 
+/// "cache prune".
+std::string full_name(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  const bool is_part = parent != nullptr && parent->get_parent() != nullptr;
+  return is_part ? full_name(*parent) + " " + command.get_name() : command.get_name();
+}
+
 [[noreturn]] void fail_unknown_argument(const CLI::App& chosen, const std::string& argument) {
   std::vector<std::string> names;
   for (const FlagInfo& flag : flags_of(chosen))
@@ -64,14 +71,14 @@ namespace {
   const std::string name = argument.substr(0, argument.find('='));
   const std::string kind = argument.starts_with("-") ? "unknown flag `" : "unexpected argument `";
   fail_usage("U001", kind + name + "`", did_you_mean(name, names),
-             "`hwsim " + chosen.get_name() + " --help` lists the flags");
+             "`hwsim " + full_name(chosen) + " --help` lists the flags");
 }
 
 }  // namespace
 
 void fail_parse(const CLI::ParseError& error, const CLI::App& app, const std::vector<std::string>& words) {
   const CLI::App& chosen = selected(app, words);
-  const std::string help = "`hwsim " + chosen.get_name() + " --help` lists the flags";
+  const std::string help = "`hwsim " + full_name(chosen) + " --help` lists the flags";
   std::string message = error.what();
   if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
     const auto rest = app.remaining(true);

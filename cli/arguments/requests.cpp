@@ -91,8 +91,7 @@ View view_of(const ViewArguments& options) {
   } catch (const InputError& error) {
     append(problems, error);
   }
-  Request request;
-  request.view.scene = options.scene;
+  Request request = open_request(options.scene);
   apply(request, sets, problems);
   apply_flags(options, request.view);
   if (!problems.empty()) throw InputError(problems);

@@ -70,8 +70,10 @@ T service_time_ns(Unit unit, const UnitWork<T>& work, const GpuRates<T>& rates) 
   return T(0.0);
 }
 
+/// Whether the unit's service time depends on a chunk's traffic: the pipes of the cores wait for lines, and
+/// the memory moves them.
 constexpr bool asks_memory(Unit unit) {
-  return unit == Unit::shader || unit == Unit::tex || unit == Unit::l2 || unit == Unit::dram;
+  return info(unit).place == UnitPlace::cores || info(unit).place == UnitPlace::memory;
 }
 
 /// The derivatives of one pass's time, summed over its chunks: parts of a cost that the time does not depend

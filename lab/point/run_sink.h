@@ -23,6 +23,10 @@ class RunSink {
   virtual void begin(const RunContext& run) { (void)run; }
   virtual void point(const PointResult& point, const RunContext& run) = 0;
 
+  /// Whether failed() takes a technique that cannot run on a GPU. Where it does not, the whole run is refused
+  /// before anything is drawn.
+  virtual bool takes_failures() const { return false; }
+
   /// The technique cannot run on the GPU; called while `error` is handled. Unless somebody takes it, the run
   /// ends here.
   virtual void failed(const algos::TechniqueChoice& technique, const GpuConfig& gpu,

@@ -25,10 +25,23 @@ std::size_t Session::stages(const RunPlan& plan) {
   return plan.techniques.size() * plan.gpus.size() + (plan.reference_samples > 0 ? 1 : 0);
 }
 
+void Session::require_possible(const RunPlan& plan, SceneView& scene) {
+  std::vector<Diagnostic> problems;
+  for (const algos::TechniqueChoice& technique : plan.techniques)
+    for (const GpuConfig& gpu : plan.gpus)
+      for (Diagnostic& found : traces_.problems(scene, technique, gpu, {plan.skip, plan.images})) {
+        found.notes.push_back("in " + point_name(technique, gpu));
+        problems.push_back(std::move(found));
+      }
+  keep_first(problems);
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
 void Session::run(const RunPlan& given, RunSink& sink, StageProgress& progress) {
   RunPlan plan = given;
   SceneView& scene = this->scene(plan.view);
   plan.view.resolution = scene.plan().resolution;
+  if (!sink.takes_failures()) require_possible(plan, scene);
   const ReferenceImage* reference = nullptr;
   if (plan.reference_samples > 0) {
     reference = &this->reference(scene, plan.reference_samples,

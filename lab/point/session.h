@@ -33,14 +33,18 @@ class Session {
   /// Ray-traced at the first call; valid as long as the session.
   const ReferenceImage& reference(SceneView& scene, int samples, const ProgressFunction& progress);
 
-  /// Runs every technique of the plan on every GPU, in this order. Throws InputError, and InternalError when
-  /// an invariant is violated.
+  /// Runs every technique of the plan on every GPU, in this order. Throws InputError, before anything is
+  /// drawn where a pair cannot run and `sink` takes no failures, and InternalError when an invariant is
+  /// violated.
   void run(const RunPlan& plan, RunSink& sink, StageProgress& progress);
 
   /// The stages of run(): the points, and the reference where there is one.
   static std::size_t stages(const RunPlan& plan);
 
  private:
+  /// Throws InputError with what keeps techniques of the plan from running on its GPUs.
+  void require_possible(const RunPlan& plan, SceneView& scene);
+
   struct KeptReference {
     const SceneView* scene = nullptr;
     int samples = 0;

@@ -12,6 +12,7 @@
 #include "lab/base/text.h"
 #include "lab/request/image_input.h"
 #include "lab/request/run_file.h"
+#include "pipeline/open/scene_source.h"
 
 namespace hwsim::lab {
 namespace {
@@ -61,6 +62,25 @@ bool is_scene_file(const std::string& scene) {
   return has_extension(scene, ".gltf") || has_extension(scene, ".glb") || is_image_file(scene);
 }
 
+/// A key that is neither the view's nor the generator's is told here, where both are known.
+void check_generator_keys(const std::string& scene, const std::vector<Key>& view_keys,
+                          std::vector<Assignment>& sets, std::vector<Diagnostic>& problems) {
+  const std::string name = scene.substr(0, scene.find(':'));
+  const auto generator = std::ranges::find(pipeline::generators(), name, &pipeline::GeneratorInfo::name);
+  if (generator == pipeline::generators().end()) return;  // told when it is opened
+  std::vector<std::string> known;
+  for (const Key& key : view_keys) known.emplace_back(key.info.name);
+  for (const pipeline::GeneratorParameter& parameter : generator->parameters) known.push_back(parameter.name);
+  std::erase_if(sets, [&](const Assignment& set) {
+    if (std::ranges::find(known, key_of(set)) != known.end()) return false;
+    problems.push_back(
+        problem("S202", "neither views nor `" + name + "` have the key `" + key_of(set) + "`",
+                did_you_mean(key_of(set), known),
+                "`hwsim show " + name + "` lists those of the scene, `hwsim help run` the others"));
+    return true;
+  });
+}
+
 /// scene.* holds values of the view and, for a generated scene, the generator's own parameters; the generator
 /// checks the latter.
 void apply_to_view(View& view, const std::vector<Assignment>& sets, std::vector<Diagnostic>& problems) {
@@ -72,6 +92,7 @@ void apply_to_view(View& view, const std::vector<Assignment>& sets, std::vector<
     (known || is_scene_file(view.scene) ? own : generator).push_back(set);
   }
   apply_settings("scene", keys, own, problems);
+  check_generator_keys(view.scene, keys, generator, problems);
   view.scene = with_parameters(view.scene, generator);
 }
 

@@ -222,17 +222,23 @@ const std::shared_ptr<const pipeline::Scene>& SceneView::scene() {
 }
 
 algos::FrameRequest SceneView::frame_request() {
+  // All members by name, as in `describe`: a new one that is forgotten here does not compile.
+  const auto& [scene_name, resolution, camera, point_lights, light_range, lights, shadows, shadow_map_px,
+               metal_ambient, reference_shadows, exposure, memory_mib] = plan_;
+  static_cast<void>(scene_name), static_cast<void>(camera);  // scene(), camera_
+  static_cast<void>(reference_shadows), static_cast<void>(exposure),
+      static_cast<void>(memory_mib);  // elsewhere
   algos::FrameRequest request;
   request.scene = scene();
-  request.width_px = plan_.resolution.width_px;
-  request.height_px = plan_.resolution.height_px;
+  request.width_px = resolution.width_px;
+  request.height_px = resolution.height_px;
   request.camera = camera_;
-  request.point_lights = plan_.point_lights;
-  request.light_range = plan_.light_range;
-  request.lights = light_profile_from_name(plan_.lights).value_or(algos::LightProfile::scene);
-  request.shadows = plan_.shadows;
-  request.shadow_map_px = plan_.shadow_map_px;
-  request.metal_ambient = plan_.metal_ambient;
+  request.point_lights = point_lights;
+  request.light_range = light_range;
+  request.lights = light_profile_from_name(lights).value_or(algos::LightProfile::scene);
+  request.shadows = shadows;
+  request.shadow_map_px = shadow_map_px;
+  request.metal_ambient = metal_ambient;
   request.image = image_;
   return request;
 }

@@ -12,6 +12,7 @@
 #include "hwsim/trace/trace_file.h"
 #include "lab/request/request.h"
 #include "pipeline/base/sealed_file.h"
+#include "pipeline/graph/validate.h"
 
 namespace hwsim::lab {
 namespace {
@@ -108,6 +109,19 @@ EmulatedFrame TraceStore::frame(SceneView& scene, const algos::TechniqueChoice& 
 bool TraceStore::holds(const SceneView& scene, const algos::TechniqueChoice& technique, const GpuConfig& gpu,
                        const FrameNeeds& needs) const {
   return in_memory(trace_key(work_text(scene, technique, gpu, needs)), needs.image) != nullptr;
+}
+
+std::vector<Diagnostic> TraceStore::problems(SceneView& scene, const algos::TechniqueChoice& technique,
+                                             const GpuConfig& gpu, const FrameNeeds& needs) const try {
+  const std::string key = trace_key(work_text(scene, technique, gpu, needs));
+  std::error_code error;
+  if (in_memory(key, false) || (options_.disk && std::filesystem::exists(frame_path(key), error))) return {};
+  algos::FrameRequest request = scene.frame_request();
+  request.features = gpu.features;
+  request.functional = gpu.functional;
+  return pipeline::validate(algos::build_frame(technique, request), gpu.features, gpu.functional);
+} catch (const InputError& error) {
+  return error.diagnostics();
 }
 
 std::shared_ptr<const Emulation> TraceStore::in_memory(const std::string& key, bool image) const {

@@ -38,6 +38,10 @@ class TraceStore {
   EmulatedFrame frame(SceneView& scene, const algos::TechniqueChoice& technique, const GpuConfig& gpu,
                       const FrameNeeds& needs, const ProgressFunction& progress);
 
+  /// Why the technique cannot run on the GPU; none where it can, or where its trace is kept.
+  std::vector<Diagnostic> problems(SceneView& scene, const algos::TechniqueChoice& technique,
+                                   const GpuConfig& gpu, const FrameNeeds& needs) const;
+
   /// Whether the frame is in memory.
   bool holds(const SceneView& scene, const algos::TechniqueChoice& technique, const GpuConfig& gpu,
              const FrameNeeds& needs) const;

@@ -63,10 +63,12 @@ std::string_view verdict(const Costs& costs, const std::vector<Limit>& budget) {
       over_memory = over_memory || value > limit.at_most;
       continue;
     }
-    const double below = costs.interval_ms ? costs.frame_ms - (*costs.interval_ms)[0] : 0.0;
-    const double above = costs.interval_ms ? (*costs.interval_ms)[1] - costs.frame_ms : 0.0;
-    over_time = over_time || value - below > limit.at_most;
-    at_risk = at_risk || value + above > limit.at_most;
+    // Two frames of one scene on one GPU err by about the same factor, so that their difference does, too:
+    // the cost of anti-aliasing is no less certain than the frame, and `none` costs nothing for certain.
+    const double least = costs.interval_ms ? (*costs.interval_ms)[0] / costs.frame_ms : 1.0;
+    const double most = costs.interval_ms ? (*costs.interval_ms)[1] / costs.frame_ms : 1.0;
+    over_time = over_time || value * least > limit.at_most;
+    at_risk = at_risk || value * most > limit.at_most;
   }
   return over_memory ? "over memory" : over_time ? "over time" : at_risk ? "at risk" : "ok";
 }

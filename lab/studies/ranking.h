@@ -55,6 +55,7 @@ class RankingSink : public RunSink {
 
   void begin(const RunContext& run) override;
   void point(const PointResult& point, const RunContext& run) override;
+  bool takes_failures() const override { return true; }
   void failed(const algos::TechniqueChoice& technique, const GpuConfig& gpu,
               const InputError& error) override;
 

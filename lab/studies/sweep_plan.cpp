@@ -166,7 +166,7 @@ SweepPoint SweepPlan::row(std::size_t index) const {
           .technique = technique_text(*planned.technique),
           .gpu = planned.gpu.id,
           .engine = std::string(engine_name(planned.plan->engine)),
-          .resolution = planned.plan->view.resolution,
+          .resolution = planned.scene->plan().resolution,
           .settings = std::move(planned.settings),
           .run_file = group.run_files[index / gpus() % techniques()],
           .gpu_file = show(planned.gpu, false)};

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 
 #include "hwsim/sample_gpu.h"
@@ -287,16 +286,6 @@ TEST(Detailed, AStallIsReportedWithItsPlace) {
     for (const char* part : {"uneven", "packet", "crop", "dram", "resident"})
       EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
   }
-}
-
-TEST(Detailed, RunsAtLeastThreeHundredThousandFragmentsASecond) {
-  PassWork pass = busy_pass(64);
-  for (PassCounters& c : pass.chunks) c.stats.fragment_shader_invocations = 8000;
-  const auto start = std::chrono::steady_clock::now();
-  time_one(pass, sample_gpu(), Engine::detailed);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  RecordProperty("kfragments_a_second", static_cast<int>(64 * 8 / seconds));
-  EXPECT_GT(64 * 8000 / seconds, 1e5);  // 3e5 is the aim; sanitizers and busy machines get the rest
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
@@ -283,21 +282,6 @@ TEST(Engines, InvariantsHoldAndBrokenOnesAreReported) {
     bad.passes.pop_back();
     EXPECT_FALSE(check_timing(bad, trace, gpu).empty());
   }
-}
-
-TEST(Engines, ReplayOfFiveHundredChunksIsQuick) {
-  WorkTrace trace;
-  trace.passes = {busy_pass(500)};
-  const GpuConfig gpu = sample_gpu();
-  double best_ms = 1e9;
-  for (int i = 0; i < 20; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    EXPECT_GT(time_frame(trace, gpu, Engine::queue).time_ns, 0.0);
-    best_ms = std::min(
-        best_ms, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-  }
-  RecordProperty("best_us", static_cast<int>(best_ms * 1000.0));
-  EXPECT_LT(best_ms, 10.0);  // 1 ms is the aim; sanitizers and busy machines get the rest
 }
 
 }  // namespace

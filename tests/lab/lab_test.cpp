@@ -281,5 +281,39 @@ TEST(Lab, ShardIsAPartOfAWhole) {
     EXPECT_EQ(mistakes([&] { parse_shard(text); }), std::vector<std::string>{"U003"}) << text;
 }
 
+TEST(Lab, PairThatCannotRunIsRefusedBeforeAnythingIsDrawn) {
+  const Workbench bench;
+  Listener listener;
+  Lab lab({.observer = &listener});
+  const Request request = bench.request({"none", "msaa32x"}, {"gtx980", "gtx470"});
+  try {
+    lab.run(request);
+    ADD_FAILURE() << "no GTX 470 has 32 samples";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.diagnostics().front().code, "G006");
+    EXPECT_NE(error.diagnostics().front().notes.back().find("msaa32x on gtx470"), std::string::npos);
+  }
+  EXPECT_TRUE(listener.done.empty() || listener.done.back() == 0.0) << "something was drawn";
+}
+
+TEST(Lab, ImageHasNoReference) {
+  const Workbench bench;
+  pipeline::write_image(pipeline::Image(8, 8), bench.path("image.png"));
+  View view;
+  view.scene = bench.path("image.png");
+  EXPECT_THROW(Lab().reference(view, 4), InputError);
+}
+
+TEST(Lab, SweepOverAnImageRecordsTheSizeOfTheImage) {
+  const Workbench bench;
+  pipeline::write_image(pipeline::Image(24, 16), bench.path("image.png"));
+  Request request = bench.request({"fxaa"});
+  request.view.scene = bench.path("image.png");
+  Lab lab;
+  const SweepPlan plan = lab.plan_sweep(request, {});
+  ASSERT_EQ(plan.size(), 1u);
+  EXPECT_EQ(plan.row(0).resolution, (Resolution{24, 16}));
+}
+
 }  // namespace
 }  // namespace hwsim::lab

@@ -114,6 +114,64 @@ TEST(Request, TheKeyOfATraceHoldsEveryValueOfItsView) {
   fs::remove(image);
 }
 
+/// Two cameras that see the same triangle, `x` of whose corners is in the file.
+std::string two_cameras(const std::string& name, const std::string& corner) {
+  const std::string path = (fs::path(::testing::TempDir()) / name).string();
+  std::ofstream(path) << R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
+    "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 3]}, {"camera": 1, "translation": [0, 0, 4]}],
+    "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}},
+                {"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}],
+    "extensionsUsed": ["KHR_lights_punctual"], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                   "min": [-2, -1, 0], "max": [1, 1, 0]}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,)"
+                      << corner << R"(AAAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]})";
+  return path;
+}
+
+// The camera's index and the scene's content stand in the key by hand, as the user's names for them do not.
+TEST(Request, TheKeyOfATraceHoldsTheCameraTheContentAndTheExposure) {
+  const Cache cache{""};
+  Observer silent;
+  const algos::TechniqueChoice technique = algos::parse_technique("none");
+  const auto work = [&](const View& view) {
+    return TraceStore::work_text(SceneView(view, cache, silent), technique, GpuConfig(), {});
+  };
+  View plain;
+  plain.scene = two_cameras("hwsim_cameras.gltf", "AACAvwAAgL8A");
+  View other_camera = plain, other_content = plain, other_exposure = plain;
+  other_camera.camera = "1";
+  other_content.scene = two_cameras("hwsim_cameras_2.gltf", "AAAAwAAAgL8A");
+  other_exposure.exposure = 0.25;
+  for (const View& other : {other_camera, other_content, other_exposure}) EXPECT_NE(work(other), work(plain));
+  View same = plain;
+  same.scene = two_cameras("hwsim_cameras_3.gltf", "AACAvwAAgL8A");
+  EXPECT_EQ(work(same), work(plain)) << "another name for the same scene";
+  for (const View& view : {plain, other_content, same}) fs::remove(view.scene);
+}
+
+TEST(Request, FrameHasTheDefaultsOfAView) {
+  const View view;
+  const algos::FrameRequest frame;
+  EXPECT_EQ(frame.point_lights, view.point_lights);
+  EXPECT_EQ(frame.light_range, view.light_range);
+  EXPECT_EQ(frame.shadows, view.shadows);
+  EXPECT_EQ(frame.shadow_map_px, view.shadow_map_px);
+  EXPECT_EQ(frame.metal_ambient, view.metal_ambient);
+}
+
+TEST(Request, MistypedKeyOfAGeneratedSceneFindsTheViewsKeys) {
+  Request request;
+  request.view.scene = "grass:seed=3";
+  std::vector<Diagnostic> problems;
+  apply(request, {parse_assignment("scene.point_light=2"), parse_assignment("scene.shadow=false")}, problems);
+  ASSERT_EQ(problems.size(), 2u);
+  EXPECT_NE(problems[0].hint.find("point_lights"), std::string::npos) << problems[0].hint;
+  EXPECT_NE(problems[1].hint.find("shadows"), std::string::npos) << problems[1].hint;
+  EXPECT_EQ(request.view.scene, "grass:seed=3");
+}
+
 /// The request that comes back from a run.toml which one changed value was written to.
 class RunFile : public ::testing::Test {
  protected:

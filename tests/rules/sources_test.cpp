@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "rules/documents.h"
+#include "support/places.h"
 
 namespace {
 
@@ -67,6 +68,36 @@ TEST(Sources, CommentsNameTheirSubject) {
       EXPECT_FALSE(begins && lacks_subject(line.text)) << line.place() << ": " << line.text;
       continues = is_comment(line.text);
     }
+  }
+}
+
+// A time is the machine's: benchmarks state it, as a ratio. What it is caused by can be asserted.
+TEST(Sources, NoTestLooksAtAClock) {
+  for (const fs::path& file : project_files({".h", ".cpp"})) {
+    const std::string path = file.generic_string();
+    if (path.rfind("tests/", 0) != 0 || path.rfind("tests/oracle/llvmpipe", 0) == 0 ||  // benchmarks use it
+        path == "tests/rules/sources_test.cpp")
+      continue;
+    for (const TextLine& line : lines_of(file))
+      EXPECT_EQ(line.text.find("y_clock::now"), std::string::npos) << line.place() << ": " << line.text;
+  }
+}
+
+// A newcomer finds the room for any line by reading what each folder says of itself.
+TEST(Sources, EveryFolderOfSourcesSaysWhatItIs) {
+  constexpr std::size_t kScreen = 70;
+  std::set<fs::path> folders;
+  for (const fs::path& file : project_files({".h", ".cpp"})) {
+    const fs::path folder = file.parent_path();
+    const bool is_part_of_tests = folder.generic_string().rfind("tests/", 0) == 0 &&
+                                  folder.has_parent_path() && folder.parent_path() != "tests";
+    if (!is_part_of_tests) folders.insert(folder);
+  }
+  EXPECT_GT(folders.size(), 60u) << "the folders were not found";
+  for (const fs::path& folder : folders) {
+    const fs::path readme = folder / "README.md";
+    ASSERT_TRUE(fs::exists(fs::path(hwsim::test::source_dir()) / readme)) << readme;
+    EXPECT_LE(lines_of(readme).size(), kScreen) << readme;
   }
 }
 
