@@ -36,9 +36,16 @@ if [ "${2:-}" = all ]; then
   exec ctest --preset "$preset" --parallel "${HWSIM_TEST_JOBS:-$jobs}"
 fi
 cmake --build --preset "$preset" --parallel "$jobs" --target "${programs[@]}" "${targets[@]}"
-for program in "${programs[@]}"; do
-  "build/$preset/bin/$program" --gtest_brief=1 --gtest_filter="$filter"
-done
+run_shards() { # PROGRAM: its tests in as many processes as jobs; fails when one of them does
+  local processes=() failed=0
+  for ((i = 0; i < jobs; ++i)); do
+    GTEST_TOTAL_SHARDS=$jobs GTEST_SHARD_INDEX=$i "build/$preset/bin/$1" --gtest_brief=1 --gtest_filter="$filter" &
+    processes+=($!)
+  done
+  for process in "${processes[@]}"; do wait "$process" || failed=1; done
+  return $failed
+}
+for program in "${programs[@]}"; do run_shards "$program"; done
 if [ ${#targets[@]} -gt 0 ]; then
   ctest --preset "$preset" --tests-regex '^Fuzz\.' --parallel 2
 fi

@@ -5,6 +5,7 @@
 #include "cli/commands/commands.h"
 #include "cli/commands/lab_options.h"
 #include "cli/terminal/answer.h"
+#include "hwsim/base/units_of_measure.h"
 #include "lab/base/messages.h"
 #include "lab/base/table.h"
 #include "lab/results/folder_exchange.h"
@@ -46,7 +47,7 @@ ExitStatus cache(const CacheArguments& options, Context& context) {
   print({.table = file_table(files)}, options.common);
   const char* verb = !options.prune ? "in" : options.dry_run ? "would be removed from" : "removed from";
   context.log.say(fmt::format("{} files, {:.1f} MiB {} {}", files.size(),
-                              static_cast<double>(bytes) / (1024.0 * 1024.0), verb, lab.cache().folder()));
+                              static_cast<double>(bytes) / kBytesPerMib, verb, lab.cache().folder()));
   return ExitStatus::done;
 }
 

@@ -6,6 +6,7 @@
 
 #include "algos/base/technique.h"
 #include "hwsim/base/file_name.h"
+#include "hwsim/base/units_of_measure.h"
 #include "pipeline/open/scene_check.h"
 #include "pipeline/open/scene_source.h"
 #include "pipeline/reference/shadow_detail.h"
@@ -24,7 +25,7 @@ std::vector<TableCell> scene_row(const pipeline::Scene& scene) {
           std::uint64_t{scene.instances.size()},
           std::uint64_t{scene.materials.size()},
           std::uint64_t{scene.textures.size()},
-          Real{static_cast<double>(s.texture_bytes) / (1024.0 * 1024.0), 1},
+          Real{static_cast<double>(s.texture_bytes) / kBytesPerMib, 1},
           s.drawn_mask_triangles,
           s.drawn_blend_triangles,
           std::uint64_t{scene.lights.size()},
