@@ -137,13 +137,14 @@ std::optional<Light> light_of(Report& report, const tinygltf::Light& source, con
   return light;
 }
 
-/// Nothing where the camera's lengths leave float's range beside the scene's size.
+/// Nothing where the camera's lengths leave float's range beside the scene's size. A far plane out there is
+/// as good as one at the range's end.
 std::optional<Camera> camera_of(const CameraSpec& source, const Frame& frame, double units_per_m) {
-  constexpr double kLeast = 1e-30, kMost = 1e18;
+  constexpr double kLeast = 1e-30, kMost = 1e15, kFarthest = 1e18;
   const auto fits = [&](double length, double least) {
     return length * units_per_m >= least && length * units_per_m <= kMost;
   };
-  if (!fits(source.near, source.orthographic ? 0.0 : kLeast) || !fits(source.far, 0.0) ||
+  if (!fits(source.near, source.orthographic ? 0.0 : kLeast) ||
       (source.orthographic &&
        !(fits(source.half_height, kLeast) && fits(source.half_height * source.aspect_ratio, kLeast))))
     return std::nullopt;
@@ -156,7 +157,7 @@ std::optional<Camera> camera_of(const CameraSpec& source, const Frame& frame, do
     camera.fov_y_rad = static_cast<float>(source.fov_y_rad);
   camera.aspect_ratio = static_cast<float>(source.aspect_ratio);
   camera.near_m = static_cast<float>(source.near * units_per_m);
-  camera.far_m = static_cast<float>(source.far * units_per_m);
+  camera.far_m = static_cast<float>(std::min(source.far * units_per_m, kFarthest));
   return camera;
 }
 

@@ -155,6 +155,9 @@ TEST_F(ScenePlacement, ACameraOfASceneOfAnySizeIsKept) {
 TEST_F(ScenePlacement, ACameraBesideWhoseLengthsTheSceneVanishesIsLeftOut) {
   GlbBuilder glb = scene_below(json::object());
   glb.root["cameras"][0]["perspective"]["zfar"] = 1e25;
+  EXPECT_EQ(load(glb).cameras.at(0).name, "eye");  // whose far plane is as good as another
+  EXPECT_FLOAT_EQ(load(glb).cameras.at(0).far_m, 1e18f);
+  glb.root["cameras"][0]["perspective"]["znear"] = 1e20;
   const Scene scene = load(glb);
   EXPECT_EQ(scene.cameras.at(0).name, "default");
   EXPECT_EQ(std::count_if(scene.notes.begin(), scene.notes.end(),
