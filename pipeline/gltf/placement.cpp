@@ -86,9 +86,9 @@ Placement place_scene(const Box& bounds, const DrawnScale& drawn, double view_di
     if (drawn.largest > 0.0)
       if (const int undo = unit_exponent(drawn.largest / unit); fits(times_power_of_ten(diagonal, undo)))
         exponent = undo;
-    if (const double view = view_distance_m / unit; view > 0.0)
-      exponent = std::min(exponent, static_cast<int>(std::floor(std::log10(kFarthestView / view))));
   }
+  if (const double view = view_distance_m / unit; times_power_of_ten(view, exponent) > kFarthestView)
+    exponent = static_cast<int>(std::floor(std::log10(kFarthestView / view)));
   Placement out;
   out.origin = round_origin(bounds);
   out.scale = times_power_of_ten(1.0, exponent) / unit;

@@ -119,7 +119,8 @@ bool depths_run_together(const Camera& camera, const glm::vec3& bounds_min, cons
   // Depth is 1 - near/z: a step of it is z^2/near.
   const auto z = static_cast<double>(std::min(farthest_m(camera, bounds_min, bounds_max), camera.far_m));
   const double step = kRounding * z * z / static_cast<double>(camera.near_m);
-  return step > kOfTheScene * glm::length(glm::dvec3(bounds_max) - glm::dvec3(bounds_min));
+  const double size = glm::length(glm::dvec3(bounds_max) - glm::dvec3(bounds_min));
+  return size > 0.0 && step > kOfTheScene * size;
 }
 
 Light default_sun() {

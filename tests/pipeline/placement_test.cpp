@@ -222,6 +222,9 @@ TEST_F(ScenePlacement, ACameraFarFromATinySceneStaysInRange) {
   const glm::vec4 eye = glm::inverse(scene.cameras[0].view_from_world)[3];
   EXPECT_TRUE(std::isfinite(eye.x));
   EXPECT_LT(glm::length(glm::vec3(eye)), 1e13f);
+  glb = scene_below(json::object());
+  glb.root["nodes"][0]["scale"] = {1e-30, 1e-30, 1e-30};
+  EXPECT_EQ(load(glb).cameras.at(0).name, "eye");
 }
 
 TEST_F(ScenePlacement, ATransformationOutOfRangeIsRefusedWithItsNode) {
