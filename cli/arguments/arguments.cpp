@@ -311,6 +311,8 @@ std::vector<std::string> with_explicit_values(int argc, const char* const* argv)
 Command parse_arguments(int argc, const char* const* argv) {
   const auto parser = std::make_unique<Parser>();
   const std::vector<std::string> words = with_explicit_values(argc, argv);
+  if (std::ranges::find(words, std::string()) != words.end())  // CLI11 hangs on some of them
+    fail_usage("U003", "an argument is empty", "", "leave it out, or look at the variable that it came from");
   const bool wants_text = !words.empty() && words.front().starts_with("-");
   if (!wants_text) check_command_names(parser->app, words);
   try {

@@ -39,6 +39,7 @@ TEST_P(BadInput, EndsInItsStatusAndMessageAndWritesNothing) {
 const Mistake kMistakes[] = {
     {"UnknownCommand", "rnu triangle.gltf", 2, "U001", "did you mean `run`"},
     {"NoCommand", "", 2, "U002", "no command"},
+    {"EmptyArgument", "run triangle.gltf '' --camera", 2, "U003", "an argument is empty"},
     {"UnknownFlag", "run triangle.gltf --techniqe none", 2, "U001", "did you mean `--technique`"},
     {"MissingScene", "run", 2, "U002", "SCENE"},
     {"FlagWithoutValue", "run triangle.gltf --engine", 2, "U004", "--engine"},

@@ -82,8 +82,11 @@ class Bench:
     def hwsim(self, words, inject=(), log=None):
         environment = {**os.environ, "HWSIM_CACHE": "cache", "HWSIM_JOBS": "1"}
         trace = ["strace", "-f", "-qq", "-o", str(log or self.root / "strace.log"), *inject] if inject or log else []
-        return subprocess.run([*trace, self.program, *words], cwd=self.work, env=environment, capture_output=True,
-                              timeout=120, check=False)
+        try:
+            return subprocess.run([*trace, self.program, *words], cwd=self.work, env=environment, capture_output=True,
+                                  timeout=120, check=False)
+        except subprocess.TimeoutExpired as late:
+            return subprocess.CompletedProcess(words, 124, late.stdout or b"", (late.stderr or b"") + b"hangs\n")
 
     def fresh(self):
         shutil.rmtree(self.work, ignore_errors=True)
