@@ -109,22 +109,33 @@ void for_each_component(const Report& report, const tinygltf::Model& model,
 
 }  // namespace
 
-std::vector<float> read_floats(const Report& report, const tinygltf::Model& model, int index, int components,
-                               const std::string& where, bool normalized) {
-  const tinygltf::Accessor& accessor = accessor_at(model, index);
-  if (tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)) != components)
-    report.fail("S004", where + ": " + element("accessors", static_cast<std::size_t>(index)) + " must have " +
-                            std::to_string(components) + " components");
-  std::vector<float> out(accessor.count * static_cast<std::size_t>(components));
-  for_each_component(report, model, accessor, where, [&](std::size_t e, std::size_t i, auto value) {
-    out[e * static_cast<std::size_t>(components) + i] = to_float(value, normalized);
+void require_components(const Report& report, const tinygltf::Model& model, const AccessorUse& use) {
+  const tinygltf::Accessor& accessor = accessor_at(model, use.accessor);
+  if (tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)) != use.components)
+    report.fail("S004", use.where + ": " + element("accessors", static_cast<std::size_t>(use.accessor)) +
+                            " must have " + std::to_string(use.components) + " components");
+}
+
+void read_floats(const Report& report, const tinygltf::Model& model, const AccessorUse& use,
+                 std::span<float> out) {
+  const auto components = static_cast<std::size_t>(use.components);
+  const tinygltf::Accessor& accessor = accessor_at(model, use.accessor);
+  for_each_component(report, model, accessor, use.where, [&](std::size_t e, std::size_t i, auto value) {
+    out[e * components + i] = to_float(value, use.normalized);
   });
   const auto bad = std::find_if(out.begin(), out.end(), [](float v) { return !std::isfinite(v); });
   if (bad != out.end())
     report.fail(
         "S010",
-        where + ": element " + std::to_string((bad - out.begin()) / components) + " is not a finite number",
+        use.where + ": element " + std::to_string((bad - out.begin()) / use.components) +
+            " is not a finite number",
         "the exporter wrote NaN or infinity: repair the mesh (remove degenerate data) and export again");
+}
+
+std::vector<float> read_floats(const Report& report, const tinygltf::Model& model, const AccessorUse& use) {
+  require_components(report, model, use);
+  std::vector<float> out(accessor_at(model, use.accessor).count * static_cast<std::size_t>(use.components));
+  read_floats(report, model, use, out);
   return out;
 }
 

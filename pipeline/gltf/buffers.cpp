@@ -118,8 +118,8 @@ std::vector<std::uint8_t> SceneFiles::read(std::string_view uri, const std::stri
   return bytes;
 }
 
-std::vector<std::vector<std::uint8_t>> read_buffers(Report& report, SceneFiles& files, Budget& budget,
-                                                    const json& root, std::span<const std::uint8_t> bin) {
+std::vector<std::vector<std::uint8_t>> read_buffers(Report& report, SceneFiles& files, const json& root,
+                                                    std::vector<std::uint8_t> bin) {
   std::vector<std::vector<std::uint8_t>> out;
   if (!root.contains("buffers")) return out;
   const std::vector<bool> needed = NeededBuffers(root).take();
@@ -137,8 +137,7 @@ std::vector<std::vector<std::uint8_t>> read_buffers(Report& report, SceneFiles& 
     } else if (i > 0 || bin.empty()) {
       fault = "has no uri; only the first buffer of a GLB may omit it";
     } else {
-      budget.charge(wanted, element("buffers", i));
-      out[i].assign(bin.begin(), bin.begin() + static_cast<std::ptrdiff_t>(std::min(wanted, bin.size())));
+      out[i] = std::move(bin);
     }
     if (fault.empty() && out[i].size() < wanted)
       fault = "holds " + std::to_string(out[i].size()) + " bytes, byteLength says " + std::to_string(wanted);

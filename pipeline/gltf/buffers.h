@@ -38,9 +38,10 @@ class SceneFiles {
 };
 
 /// All buffers, byteLength bytes each; those that neither a primitive nor an image needs stay empty. `bin`:
-/// the GLB's BIN chunk. Throws InputError (S006, S007, S012, S015).
-std::vector<std::vector<std::uint8_t>> read_buffers(Report& report, SceneFiles& files, Budget& budget,
+/// the GLB's BIN chunk, whose memory the first of them takes over. Throws InputError (S006, S007, S012,
+/// S015).
+std::vector<std::vector<std::uint8_t>> read_buffers(Report& report, SceneFiles& files,
                                                     const nlohmann::json& root,
-                                                    std::span<const std::uint8_t> bin);
+                                                    std::vector<std::uint8_t> bin);
 
 }  // namespace hwsim::pipeline::gltf

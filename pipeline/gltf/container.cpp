@@ -99,4 +99,10 @@ Container check_container(Report& report, std::vector<std::uint8_t> bytes, bool 
   return c;
 }
 
+std::vector<std::uint8_t> Container::take_bin() && {
+  bytes.resize(bin_begin + bin_bytes);
+  bytes.erase(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(bin_begin));
+  return std::move(bytes);
+}
+
 }  // namespace hwsim::pipeline::gltf

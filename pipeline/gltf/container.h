@@ -19,7 +19,8 @@ struct Container {
   std::string_view json() const {
     return {reinterpret_cast<const char*>(bytes.data()) + json_begin, json_bytes};
   }
-  std::span<const std::uint8_t> bin() const { return {bytes.data() + bin_begin, bin_bytes}; }
+  /// The BIN chunk in the memory of the whole file, which is gone then.
+  std::vector<std::uint8_t> take_bin() &&;
 };
 
 /// Reads and checks the container. Throws InputError (S001 unreadable, S002 damaged, S012 too large).

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
+#include <glm/gtc/type_ptr.hpp>
 #include <limits>
 #include <map>
+#include <span>
 #include <string>
+#include <utility>
 
 #include "pipeline/gltf/accessor.h"
 #include "pipeline/gltf/placement.h"
@@ -24,12 +26,12 @@ int attribute(const tinygltf::Primitive& primitive, const char* name) {
 }
 
 // glTF 2.0 section 3.7.2.1: strips {i, i+1+i%2, i+2-i%2}, fans {i+1, i+2, 0}.
-std::vector<std::uint32_t> triangle_list(const std::vector<std::uint32_t>& v, int mode) {
-  std::vector<std::uint32_t> out;
+std::vector<std::uint32_t> triangle_list(std::vector<std::uint32_t> v, int mode) {
   if (mode == TINYGLTF_MODE_TRIANGLES) {
-    out.assign(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 3 * 3));
-    return out;
+    v.resize(v.size() / 3 * 3);
+    return v;
   }
+  std::vector<std::uint32_t> out;
   for (std::size_t i = 0; i + 2 < v.size(); ++i) {
     if (mode == TINYGLTF_MODE_TRIANGLE_STRIP)
       out.insert(out.end(), {v[i], v[i + 1 + i % 2], v[i + 2 - i % 2]});
@@ -37,6 +39,12 @@ std::vector<std::uint32_t> triangle_list(const std::vector<std::uint32_t>& v, in
       out.insert(out.end(), {v[i + 1], v[i + 2], v[0]});
   }
   return out;
+}
+
+std::span<float> floats_of(std::vector<float>& values) { return values; }
+template <class T>
+std::span<float> floats_of(std::vector<T>& vectors) {
+  return {glm::value_ptr(vectors.front()), vectors.size() * sizeof(T) / sizeof(float)};
 }
 
 struct Needs {
@@ -87,7 +95,7 @@ class MeshBuilder {
     part.index_count = static_cast<std::uint32_t>(indices.size());
     part.material = material;
     mesh_.parts.push_back(part);
-    for (const std::uint32_t index : indices) mesh_.indices.push_back(base + index);
+    append_indices(std::move(indices), base);
   }
 
   BuiltMesh take() {
@@ -142,7 +150,7 @@ class MeshBuilder {
     }
     if (primitive.mode == TINYGLTF_MODE_TRIANGLES && order.size() % 3 != 0)
       report_.note("S105", "indices after the last whole triangle are ignored", where);
-    return triangle_list(order, primitive.mode);
+    return triangle_list(std::move(order), primitive.mode);
   }
 
   // No normals: every triangle has vertices of its own.
@@ -152,7 +160,7 @@ class MeshBuilder {
     split_flat(vertices, indices);
     report_.note("S106", "no normals: flat ones were generated, three vertices a triangle", where);
     finish_tangents(vertices, indices, where, needs);
-    return append(vertices, where);
+    return append(std::move(vertices), where);
   }
 
   // Exporters often write one set of vertices for many primitives: it is kept once, unless tangents are
@@ -171,16 +179,25 @@ class MeshBuilder {
     if (const std::size_t wrong = repair_normals(vertices, indices); wrong > 0)
       report_.warn("S107", "normals that are not of unit length were normalized", where);
     finish_tangents(vertices, indices, where, needs);
-    const std::uint32_t base = append(vertices, where);
+    const std::uint32_t base = append(std::move(vertices), where);
     if (!own_copy) base_of_[key] = base;
     return base;
   }
 
-  std::uint32_t append(const Vertices& vertices, const std::string& where) {
+  // The memory of a mesh's first primitive becomes the mesh's.
+  void append_indices(std::vector<std::uint32_t> indices, std::uint32_t base) {
+    for (std::uint32_t& index : indices) index += base;
+    if (mesh_.indices.empty())
+      mesh_.indices = std::move(indices);
+    else
+      mesh_.indices.insert(mesh_.indices.end(), indices.begin(), indices.end());
+  }
+
+  std::uint32_t append(Vertices vertices, const std::string& where) {
     const std::size_t base = mesh_.positions.size();
     if (base + vertices.positions.size() > std::numeric_limits<std::uint32_t>::max())
       report_.fail("S012", where + ": the mesh has more than 4294967295 vertices", "split the mesh");
-    append_vertices(mesh_, vertices);
+    append_vertices(mesh_, std::move(vertices));
     return static_cast<std::uint32_t>(base);
   }
 
@@ -210,14 +227,15 @@ class MeshBuilder {
     const int accessor = attribute(primitive, name);
     if (accessor < 0) return {};
     const std::string place = where + " attribute " + name;
-    const std::vector<float> flat =
-        read_floats(report_, model_, accessor, kComponents, place, must_be_normalized(accessor, name, where));
+    const AccessorUse use{accessor, kComponents, place, must_be_normalized(accessor, name, where)};
+    require_components(report_, model_, use);
+    const std::size_t count = accessor_at(model_, accessor).count;
     const std::size_t wanted = accessor_at(model_, attribute(primitive, "POSITION")).count;
-    if (flat.size() != wanted * kComponents)
-      report_.fail("S009", place + " has " + std::to_string(flat.size() / kComponents) +
-                               " elements, POSITION has " + std::to_string(wanted));
+    if (count != wanted)
+      report_.fail("S009", place + " has " + std::to_string(count) + " elements, POSITION has " +
+                               std::to_string(wanted));
     std::vector<T> out(wanted);
-    if (!flat.empty()) std::memcpy(static_cast<void*>(out.data()), flat.data(), flat.size() * sizeof(float));
+    if (!out.empty()) read_floats(report_, model_, use, floats_of(out));
     return out;
   }
 

@@ -77,8 +77,8 @@ glm::dmat4 matrix_of(Report& report, const Source& source, std::size_t index, co
               where);
   std::vector<float> inverse;
   if (skin.inverse_bind_matrices >= 0)
-    inverse = read_floats(report, source.model, skin.inverse_bind_matrices, 16,
-                          where + ".inverseBindMatrices", false);
+    inverse = read_floats(report, source.model,
+                          {skin.inverse_bind_matrices, 16, where + ".inverseBindMatrices", false});
   const std::vector<glm::dmat4> matrices = joint_matrices(skin, inverse, nodes);
   if (matrices.empty()) {
     report.warn("S110", "a skin has no joint in the scene: its meshes are drawn as modeled", where);

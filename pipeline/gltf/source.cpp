@@ -68,15 +68,14 @@ tinygltf::Model parse(const Report& report, json&& root) {
 
 }  // namespace
 
-Source read_source(Report& report, const Container& container, const SceneLoadOptions& options,
-                   Budget& budget) {
+Source read_source(Report& report, Container container, const SceneLoadOptions& options, Budget& budget) {
   budget.charge(container.bytes.size(), "the file");
   json root = parse_json(report, container.json());
   check_rules(report, root);
 
   SceneFiles files(report, budget, options.max_file_bytes);
   files.add_to_hash(container.bytes);
-  auto buffers = read_buffers(report, files, budget, root, container.bin());
+  auto buffers = read_buffers(report, files, root, std::move(container).take_bin());
   Source source;
   source.images = read_images(files, root, buffers);
   source.cameras = read_cameras(root);

@@ -32,7 +32,6 @@ struct Source {
 
 /// Everything that is checked without looking at vertices is right in the result: types, references, byte
 /// ranges. Throws InputError.
-Source read_source(Report& report, const Container& container, const SceneLoadOptions& options,
-                   Budget& budget);
+Source read_source(Report& report, Container container, const SceneLoadOptions& options, Budget& budget);
 
 }  // namespace hwsim::pipeline::gltf

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hwsim::pipeline::gltf {
 namespace {
@@ -84,9 +85,14 @@ glm::vec4 orthogonal_tangent(const glm::vec3& normal, const glm::dvec3& directio
 
 // Old vertices without the attribute, new ones without it: neutral values, only if either side has it.
 template <class T>
-void append_attribute(std::vector<T>& to, const std::vector<T>& from, std::size_t old_count,
-                      std::size_t added, const T& neutral) {
+void append_attribute(std::vector<T>& to, std::vector<T> from, std::size_t old_count, std::size_t added,
+                      const T& neutral) {
   if (to.empty() && from.empty()) return;
+  if (old_count == 0) {
+    to = std::move(from);
+    to.resize(added, neutral);
+    return;
+  }
   to.resize(old_count, neutral);
   to.insert(to.end(), from.begin(), from.end());
   to.resize(old_count + added, neutral);
@@ -163,15 +169,15 @@ void generate_tangents(Vertices& v, const std::vector<std::uint32_t>& indices, i
     v.tangents[i] = orthogonal_tangent(v.normals[i], sums[i].direction, sums[i].handedness);
 }
 
-void append_vertices(Mesh& mesh, const Vertices& v) {
+void append_vertices(Mesh& mesh, Vertices v) {
   const std::size_t old_count = mesh.positions.size(), added = v.positions.size();
-  append_attribute(mesh.positions, v.positions, old_count, added, glm::vec3(0.0f));
-  append_attribute(mesh.normals, v.normals, old_count, added, glm::vec3(0, 1, 0));
-  append_attribute(mesh.tangents, v.tangents, old_count, added, glm::vec4(1, 0, 0, 1));
-  append_attribute(mesh.uv0, v.uv0, old_count, added, glm::vec2(0.0f));
-  append_attribute(mesh.uv1, v.uv1, old_count, added, glm::vec2(0.0f));
-  append_attribute(mesh.colors, v.colors, old_count, added, glm::vec4(1.0f));
-  append_attribute(mesh.radius, v.radius, old_count, added, 0.0f);
+  append_attribute(mesh.positions, std::move(v.positions), old_count, added, glm::vec3(0.0f));
+  append_attribute(mesh.normals, std::move(v.normals), old_count, added, glm::vec3(0, 1, 0));
+  append_attribute(mesh.tangents, std::move(v.tangents), old_count, added, glm::vec4(1, 0, 0, 1));
+  append_attribute(mesh.uv0, std::move(v.uv0), old_count, added, glm::vec2(0.0f));
+  append_attribute(mesh.uv1, std::move(v.uv1), old_count, added, glm::vec2(0.0f));
+  append_attribute(mesh.colors, std::move(v.colors), old_count, added, glm::vec4(1.0f));
+  append_attribute(mesh.radius, std::move(v.radius), old_count, added, 0.0f);
 }
 
 }  // namespace hwsim::pipeline::gltf

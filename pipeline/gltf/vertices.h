@@ -36,6 +36,6 @@ std::size_t repair_tangents(Vertices& vertices);
 void generate_tangents(Vertices& vertices, const std::vector<std::uint32_t>& indices, int uv_set);
 
 /// Appends to a mesh; an attribute that only one side has is filled with its neutral value on the other.
-void append_vertices(Mesh& mesh, const Vertices& vertices);
+void append_vertices(Mesh& mesh, Vertices vertices);
 
 }  // namespace hwsim::pipeline::gltf
