@@ -87,7 +87,7 @@ class AggregateLight {
     const I x = s_.pixel_x(), y = s_.pixel_y();
     const glm::vec4& d = u_.depth_of_z;
     F first(0.0f), sum(0.0f), squares(0.0f), count(0.0f);
-    Slope slope{F(0.0f), F(0.0f), F(0.0f), F(0.0f)};
+    Slope slope{F(0.0f), F(0.0f), F(0.0f), F(0.0f), F(0.0f), F(0.0f)};
     s_.loop(kDepthBlock, u_.covariance ? 0 : u_.aggregate.samples, mask_, [&](int i) HWY_ATTR {
       const F z = s_.load_image(u_.depth_slot, x, y, I(i)).x;
       const M in = has_sample(r, x, y, i) & (z < F(1.0f));
@@ -106,9 +106,9 @@ class AggregateLight {
     if (u_.on_receiver) keep_on_receiver(slope, share, mean, first + mean, variance);
   }
 
-  /// Sums over an aggregate's samples: their offsets in the pixel, and those times depth.
+  /// Sums over an aggregate's samples: their offsets in the pixel, those times depth, and their squares.
   struct Slope {
-    F x, y, zx, zy;
+    F x, y, zx, zy, xx, yy;
     void add(pipeline::SamplePosition at, M in, F depth) {
       const F dx = select(in, F(static_cast<float>(at.x) * 0.0625f), F(0.0f)),
               dy = select(in, F(static_cast<float>(at.y) * 0.0625f), F(0.0f));
@@ -116,6 +116,8 @@ class AggregateLight {
       y = y + dy;
       zx = zx + dx * depth;
       zy = zy + dy * depth;
+      xx = xx + dx * dx;
+      yy = yy + dy * dy;
     }
   };
 
@@ -132,6 +134,10 @@ class AggregateLight {
     from_center_ = per_x * x + per_y * y + constant<F>(rays.per_x) * zx + constant<F>(rays.per_y) * zy;
     const F inv_deviation = rsqrt(max(variance, F(1e-20f)));
     spread_ = spread_ + (per_x * zx + per_y * zy) * inv_deviation;
+    // What no slope explains of the depths is curvature: the mean of a parabola lies 1.12 of these deviations
+    // below its middle.
+    const F xx = max(slope.xx * share - x * x, F(1e-6f)), yy = max(slope.yy * share - y * y, F(1e-6f));
+    below_ = F(1.12f) * sqrt(max(variance - zx * zx / xx - zy * zy / yy, F(0.0f)));
   }
 
   void place_by_covariance(const AggregateRecord<F, I>& r) {
@@ -361,7 +367,10 @@ class AggregateLight {
   /// Taps along the main axis, each compared as an ordinary receiver.
   F filtered_shadow() {
     F visible(0.0f);
-    const Vec3<F> middle = u_.on_receiver ? surface_.position + from_center_ : surface_.position;
+    const Vec3<F> middle =
+        u_.on_receiver ? surface_.position + from_center_ +
+                             surface_.normal * (below_ * abs(dot(surface_.normal, surface_.to_eye)))
+                       : surface_.position;
     s_.loop(kTapBlock, u_.shadow_taps, mask_, [&](int i) HWY_ATTR {
       const auto tap = static_cast<std::size_t>(i);
       const Vec3<F> p = middle + spread_ * F(u_.tap_position[tap]);
@@ -378,6 +387,7 @@ class AggregateLight {
   PixelBasis<F> basis_{};
   lanes::Surface<F> surface_{};
   Vec3<F> place_{}, spread_{};  ///< relative to the eye; standard deviation along the main axis
+  F below_{};                   ///< how far the mean place lies below a curved surface, along the ray
   Vec3<F> from_center_{};       ///< the samples' mean place, from `place_` on the pixel's middle ray
   SymmetricMatrix<F> covariance_{};
   F length_{}, diffuse_length_{}, own_scale_{};
