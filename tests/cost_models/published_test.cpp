@@ -73,7 +73,7 @@ TEST(Published, ValueThatIsNoFiniteNumberInItsRangeIsRefusedWithItsLine) {
   for (const char* value : {"2", "0.5", "1e3", "NA"}) EXPECT_EQ(message_for(value), "") << value;
 }
 
-// A fuzzer's find: the place was filled for ever.
+// The place was filled for ever.
 TEST(Published, AValueThatNamesItsOwnPlaceIsFilledInOnce) {
   std::vector<PublishedRow> rows = load_published(kPublished);
   for (PublishedRow& row : rows)
