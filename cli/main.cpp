@@ -86,6 +86,18 @@ Diagnostic file_problem(const std::filesystem::filesystem_error& error) {
   return d;
 }
 
+/// Files that cannot be written are told before the work, not after it.
+void check_places(const CommonArguments& common) {
+  std::error_code error;
+  for (const FormatRequest& format : common.formats) {
+    const std::filesystem::path file = format.file, folder = file.parent_path();
+    if (!file.empty() && !folder.empty() && !std::filesystem::is_directory(folder, error))
+      fail("U010", "cannot write `" + format.file + "`: there is no folder `" + folder.string() + "`");
+    if (!file.empty() && std::filesystem::is_directory(file, error))
+      fail("U010", "cannot write `" + format.file + "`: it is a folder");
+  }
+}
+
 /// The last resort where an exception leaves a thread: memory that is not there is said, not a crash.
 [[noreturn]] void end_badly() {
   const char* text = "error[X001]: internal error: an exception left a thread\n";
@@ -108,6 +120,7 @@ ExitStatus run_program(int argc, char** argv) {
     const CommonArguments common = common_of(command);
     context.terminal = inspect_terminal(common);
     context.log = Log(common, context.terminal);
+    check_places(common);
     return dispatch(command, context);
   } catch (const InputError& error) {
     return report(error, context.log);

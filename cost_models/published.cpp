@@ -166,12 +166,14 @@ class Mapper {
       cell.reason = "no rule in uses.csv";
     }
     set_value(cell);
-    if (cell.use != RowUse::claim) cell.has_run = set_run(cell);
+    const std::string missing = cell.use == RowUse::claim ? "" : set_run(cell);
+    cell.has_run = cell.use != RowUse::claim && missing.empty();
     const bool needs_value = cell.use == RowUse::fitted || cell.use == RowUse::count;
     if (needs_value && row.printed == kNotPrinted)
       problems_.push_back({.code = "M002", .message = "row " + row.id() + " has no value to be fitted"});
     if (!cell.has_run && (cell.use == RowUse::fitted || cell.use == RowUse::count))
-      problems_.push_back({.code = "M002", .message = "row " + row.id() + " is mapped to no run"});
+      problems_.push_back(
+          {.code = "M002", .message = "row " + row.id() + " is mapped to no run: " + missing});
     return cell;
   }
 
@@ -186,12 +188,15 @@ class Mapper {
       cell.published = reference->value * (1.0 + row.value / 100.0);
   }
 
-  bool set_run(Cell& cell) {
+  /// Returns why there is none; empty where there is.
+  std::string set_run(Cell& cell) {
     const PublishedRow& row = cell.row;
     const auto* scene = scenes_.find(row);
     const auto* technique = techniques_.find(row);
     const auto* pass = passes_.find(row);
-    if (!scene || !technique || !pass) return false;
+    for (const auto& [found, file] :
+         {std::pair{scene, "scenes.csv"}, {technique, "techniques.csv"}, {pass, "passes.csv"}})
+      if (!found) return std::string("no line of mapping/") + file + " matches it";
     RunSpec& run = cell.run;
     run.scene = scenes_.text(*scene, "stand_in");
     run.camera = scenes_.text(*scene, "camera");
@@ -202,13 +207,14 @@ class Mapper {
     for (const auto& line : gpus_.rows)
       if (line[0] == row.gpu) run.gpu = line[1];
     const auto x = row.resolution.find('x');
-    if (run.gpu.empty() || x == std::string::npos) return false;
+    if (run.gpu.empty()) return "no line of mapping/gpus.csv is `" + row.gpu + "`";
+    if (x == std::string::npos) return "it has no resolution";
     run.width_px = static_cast<int>(table_number(row.resolution.substr(0, x)).value());
     run.height_px = static_cast<int>(table_number(row.resolution.substr(x + 1)).value());
     cell.scene_group = run.scene;
     cell.passes = passes_.text(*pass, "trace_passes");
     cell.rate = table_number(row.msaa).value_or(1.0);
-    return true;
+    return {};
   }
 
   const std::vector<PublishedRow>& rows_;

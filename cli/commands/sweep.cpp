@@ -15,6 +15,8 @@ namespace {
 
 PointSettings settings_of(const SweepArguments& options) {
   std::vector<Axis> axes = parse_axes(options.vary);
+  if (options.sample && options.zip)
+    fail_usage("U019", "--zip and --sample exclude each other", "", "one of them");
   if (options.sample) return {std::move(axes), parse_sample(*options.sample), options.seed};
   return {std::move(axes), options.zip ? Combine::zip : Combine::grid};
 }

@@ -12,7 +12,7 @@ namespace hwsim::pipeline::gltf {
 /// What is wanted of an accessor of numbers.
 struct AccessorUse {
   int accessor = 0;
-  int components = 1;       ///< of an element
+  int components = 1;       ///< values an element has
   std::string where{};      ///< names the use: "meshes[0].primitives[1] attribute NORMAL"
   bool normalized = false;  ///< integers are divided as glTF 2.0 section 3.11 says
 };

@@ -106,5 +106,17 @@ TEST(Cache, PruneRemovesOldFilesAndKeepsStrangers) {
   EXPECT_EQ(place.listing("cache/scenes"), "");
 }
 
+TEST(Formats, FileThatCannotBeWrittenIsToldBeforeTheWork) {
+  const Workplace place;
+  place.write("triangle.gltf", kTriangleGltf);
+  for (const char* file : {"none/x.csv", "."}) {
+    const Outcome outcome =
+        place.hwsim(std::string("run triangle.gltf --resolution 64x36 --out result --format csv=") + file);
+    EXPECT_EQ(outcome.status, 3) << file;
+    EXPECT_NE(outcome.err.find("U010"), std::string::npos) << outcome.err;
+    EXPECT_EQ(place.listing(), "triangle.gltf") << file;
+  }
+}
+
 }  // namespace
 }  // namespace hwsim::cli::test

@@ -96,6 +96,7 @@ TEST(Published, ManyProblemsEndInAsManyMessagesAsCanBeRead) {
     FAIL() << "rows without a resolution have no run";
   } catch (const InputError& error) {
     ASSERT_EQ(error.diagnostics().size(), kProblemsShown);
+    EXPECT_NE(error.diagnostics().front().message.find("it has no resolution"), std::string::npos);
     EXPECT_NE(error.diagnostics().back().message.find(" further problems"), std::string::npos);
   }
 }
