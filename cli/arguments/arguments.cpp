@@ -166,8 +166,11 @@ void Parser::add_list_and_show() {
       ->type_name(" ");
   add_common(lister, list.common);
   CLI::App& shower = add(app, "show", kHelpShow, [this] { return Command(show); });
-  shower.add_option("NAME", show.name, "A GPU, scene, technique, counter or table")
+  shower
+      .add_option("NAME", show.words,
+                  "A GPU, scene, technique, counter or table; its kind may stand before it")
       ->required()
+      ->expected(1, 2)
       ->type_name(" ");
   shower.add_flag("--origin", show.origin, "Where each value comes from");
   add_overlays(shower, show.overlays);

@@ -98,7 +98,7 @@ struct ListArguments {
 
 struct ShowArguments {
   CommonArguments common;
-  std::string name;
+  std::vector<std::string> words;  ///< NAME, or TYPE NAME
   bool origin = false;
   std::vector<std::string> overlays, sets;
 };

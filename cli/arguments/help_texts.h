@@ -44,8 +44,8 @@ inline constexpr std::string_view kHelpRank = R"(Examples:
   hwsim rank sponza_hall -t msaa4x,ssaa4x --budget "aa_ms<=0.1, extra_mib<=8" --resolution 320x180 --reference 4
 
 Ranks techniques (all, unless -t names some) on one scene and GPU: time, memory, bytes and error of
-the image, the Pareto front of time and error, and what each is under a budget: ok, at risk, over
-time, over memory, unsupported. Writes crops of the worst regions side by side: contact_sheet.png.)";
+the image, the Pareto front of time and error, and what each is under a budget: ok, unknown
+(no interval says so), at risk, over time, over memory, unsupported. Status 4: nothing stays within it. Writes crops of the worst regions side by side: contact_sheet.png.)";
 
 inline constexpr std::string_view kHelpSweep = R"(Examples:
   hwsim sweep sponza_hall -t none,msaa4x --vary gpu.l2_size_kib=256..4096:5:log --resolution 320x180

@@ -26,13 +26,17 @@ std::string plan_text(const RunPlan& plan) {
                      plan.view.resolution.height_px, plan.reference_samples);
 }
 
+bool may_be_within(const std::string& verdict) {
+  return verdict == "ok" || verdict == "unknown" || verdict == "at risk";
+}
+
 std::string sentence(const Ranking& ranking) {
   const RankedTechnique& best = ranking.techniques.front();
-  if (best.verdict != "ok" && best.verdict != "at risk") return "no technique stays within the budget\n\n";
+  if (!may_be_within(best.verdict)) return "no technique stays within the budget\n\n";
   return fmt::format(
       "{} has the least error{}: FLIP {:.4f}, {:+.3f} ms and {:+.1f} MiB beyond no anti-aliasing{}\n\n",
       best.technique, ranking.budget.empty() ? "" : " within the budget", best.flip_mean, best.aa_ms,
-      best.extra_mib, best.verdict == "ok" ? "" : ", at risk");
+      best.extra_mib, best.verdict == "ok" ? "" : ", " + best.verdict);
 }
 
 }  // namespace
@@ -58,7 +62,7 @@ ExitStatus rank(const RankArguments& options, Context& context) {
   guard.keep();
   print({.table = table, .heading = sentence(ranking), .footing = {}, .json = &json}, options.common);
   context.log.say("results: " + place);
-  return ExitStatus::done;
+  return may_be_within(ranking.techniques.front().verdict) ? ExitStatus::done : ExitStatus::check_not_met;
 }
 
 }  // namespace hwsim::cli

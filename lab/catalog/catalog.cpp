@@ -25,13 +25,16 @@ Table Catalog::gpus() const {
                {"title", "title"},
                {"architecture", "architecture"},
                {"core_clock_mhz", "core MHz", true},
-               {"dram_bandwidth_gb_s", "DRAM GB/s", true}},
+               {"dram_bandwidth_gb_s", "DRAM GB/s", true},
+               {"calibrated", "calibrated"}},
               {}};
-  const std::string directory = folder_.gpus();
+  const std::string directory = folder_.gpus(), calibrated = folder_.calibrated();
   for (const std::string& id : list_gpus(directory)) {
     const GpuConfig gpu = load_gpu(id, {}, {}, directory);
-    table.rows.push_back(
-        {gpu.id, gpu.title, gpu.architecture, Real{gpu.core_clock_mhz, 0}, Real{gpu.dram_bandwidth_gb_s, 1}});
+    std::error_code error;
+    const bool fitted = std::filesystem::exists(calibrated + "/" + gpu.id + ".toml", error);
+    table.rows.push_back({gpu.id, gpu.title, gpu.architecture, Real{gpu.core_clock_mhz, 0},
+                          Real{gpu.dram_bandwidth_gb_s, 1}, fitted ? "yes" : "no"});
   }
   return table;
 }

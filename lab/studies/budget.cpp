@@ -55,7 +55,7 @@ std::vector<Limit> parse_budget(const std::string& text) {
 }
 
 std::string_view verdict(const Costs& costs, const std::vector<Limit>& budget) {
-  bool over_memory = false, over_time = false, at_risk = false;
+  bool over_memory = false, over_time = false, at_risk = false, unknown = false;
   for (const Limit& limit : budget) {
     const Quantity quantity = quantities().at(limit.quantity);
     const double value = costs.*quantity.member;
@@ -69,8 +69,13 @@ std::string_view verdict(const Costs& costs, const std::vector<Limit>& budget) {
     const double most = costs.interval_ms ? (*costs.interval_ms)[1] / costs.frame_ms : 1.0;
     over_time = over_time || value * least > limit.at_most;
     at_risk = at_risk || value * most > limit.at_most;
+    unknown = unknown || (!costs.interval_ms && value > 0.0);
   }
-  return over_memory ? "over memory" : over_time ? "over time" : at_risk ? "at risk" : "ok";
+  return over_memory ? "over memory"
+         : over_time ? "over time"
+         : at_risk   ? "at risk"
+         : unknown   ? "unknown"
+                     : "ok";
 }
 
 }  // namespace hwsim::lab

@@ -10,11 +10,12 @@ namespace {
 
 constexpr int kRegionSidePx = 48, kRegions = 4;
 
-/// Within the budget before at risk before the others.
+/// Within the budget, then without an interval that could say so, then at risk, then the others.
 int grade(const RankedTechnique& technique) {
   if (technique.verdict == "ok") return 0;
-  if (technique.verdict == "at risk") return 1;
-  return technique.verdict == "unsupported" ? 3 : 2;
+  if (technique.verdict == "unknown") return 1;
+  if (technique.verdict == "at risk") return 2;
+  return technique.verdict == "unsupported" ? 4 : 3;
 }
 
 bool beats(const RankedTechnique& a, const RankedTechnique& b) {

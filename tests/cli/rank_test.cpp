@@ -15,10 +15,10 @@ using nlohmann::json;
 class RankTest : public testing::Test {
  protected:
   RankTest() { place.write("triangle.gltf", kTriangleGltf); }
-  json rank(const std::string& flags) {
+  json rank(const std::string& flags, int status = 0) {
     const Outcome outcome = place.hwsim(
         "rank triangle.gltf --resolution 96x64 --reference 4 --force --out result --json " + flags);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.status, status) << outcome.err;
     return json::parse(outcome.out, nullptr, false);
   }
   std::map<std::string, json> by_name(const json& result) {
@@ -63,16 +63,17 @@ TEST_F(RankTest, VerdictsFollowTheBudget) {
   EXPECT_EQ(rows.at("msaa8x")["verdict"], "unsupported");
   EXPECT_NE(rows.at("msaa8x")["reason"].get<std::string>().find("native_msaa_max"), std::string::npos);
   const double mib = rows.at("msaa4x")["extra_mib"], ms = rows.at("msaa4x")["aa_ms"];
-  const auto verdict = [&](double limit_ms, double limit_mib) {
+  const auto verdict = [&](double limit_ms, double limit_mib, int status) {
     return by_name(rank("-t msaa4x --no-image --budget 'aa_ms <= " + std::to_string(limit_ms) +
-                        ", extra_mib<=" + std::to_string(limit_mib) + "'"))
+                            ", extra_mib<=" + std::to_string(limit_mib) + "'",
+                        status))
         .at("msaa4x")["verdict"]
         .get<std::string>();
   };
-  EXPECT_EQ(verdict(ms + 1, mib + 1), "ok");
-  EXPECT_EQ(verdict(ms + 1, mib - 0.01), "over memory");
-  EXPECT_EQ(verdict(ms - 1, mib + 1), "over time");
-  EXPECT_EQ(rank("-t msaa4x --no-image --budget 'frame_ms<=0'")["techniques"].size(), 2u);
+  EXPECT_EQ(verdict(ms + 1, mib + 1, 0), "ok");
+  EXPECT_EQ(verdict(ms + 1, mib - 0.01, 0), "over memory") << "`none` is within";
+  EXPECT_EQ(verdict(ms - 1, mib + 1, 4), "over time") << "not even `none` takes less than no time";
+  EXPECT_EQ(rank("-t msaa4x --no-image --budget 'frame_ms<=0'", 4)["techniques"].size(), 2u);
 }
 
 TEST_F(RankTest, SheetShowsTheWorstRegions) {

@@ -54,10 +54,11 @@ TEST(Budget, WhatCostsNothingIsNeverAtRisk) {
   EXPECT_EQ(verdict_of("aa_ms<=0.01", none), "ok");
 }
 
-TEST(Budget, TimeWithoutAnIntervalIsNeverAtRisk) {
+TEST(Budget, TimeWithoutAnIntervalIsUnknownAtBest) {
   Costs costs = two_milliseconds();
   costs.interval_ms.reset();
-  EXPECT_EQ(verdict_of("frame_ms<=2", costs), "ok");
+  EXPECT_EQ(verdict_of("frame_ms<=2", costs), "unknown") << "a number that nobody checked promises nothing";
+  EXPECT_EQ(verdict_of("memory_mib<=100", costs), "ok") << "memory is counted";
   EXPECT_EQ(verdict_of("frame_ms<=1.99", costs), "over time");
 }
 
