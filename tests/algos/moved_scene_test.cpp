@@ -2,6 +2,7 @@
 // times as large. Every counter of the work trace and every code of the picture must be what they were.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -50,9 +51,10 @@ Bytes moved(const Bytes& glb, const Move& move) {
   scale_lengths(root, move.scale);
   std::string text = root.dump();
   while (text.size() % 4 != 0) text += ' ';
-  Bytes out(glb.begin(), glb.begin() + 20);
-  out.insert(out.end(), text.begin(), text.end());
-  out.insert(out.end(), glb.begin() + 20 + static_cast<std::ptrdiff_t>(length), glb.end());
+  Bytes out(glb.size() - length + text.size());  // at once: g++ 12 takes an insertion for an overflow
+  const auto header_end = std::copy_n(glb.begin(), 20, out.begin());
+  const auto text_end = std::copy(text.begin(), text.end(), header_end);
+  std::copy(glb.begin() + 20 + static_cast<std::ptrdiff_t>(length), glb.end(), text_end);
   for (std::size_t i = 0; i < 4; ++i) {
     out[8 + i] = static_cast<std::uint8_t>(out.size() >> (8 * i));
     out[12 + i] = static_cast<std::uint8_t>(text.size() >> (8 * i));
