@@ -259,7 +259,7 @@ TEST_F(ForeignScene, AWrongSkinCostsNoScene) {
                                             {{"joints", {2}}, {"inverseBindMatrices", 0}},
                                             {{"joints", {2, 3, 1}}, {"inverseBindMatrices", 3}}}) {
     GlbBuilder glb = skinned_square(5);
-    glb.root["skins"] = {skin};
+    glb.root["skins"] = json::array({skin});  // {skin} is a copy to clang
     const Scene scene = load(glb);
     EXPECT_EQ(stats(scene).drawn_triangles, 2u) << skin;
     EXPECT_TRUE(has_note(scene, "S110", "drawn as modeled")) << skin;
