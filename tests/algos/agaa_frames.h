@@ -13,19 +13,19 @@ namespace hwsim::test {
 inline constexpr int kWidth = 48, kHeight = 32;
 
 /// Rectangles that face a camera at z = 2 which looks along -z; one material each.
-struct Patch {
+struct Rectangle {
   float left, right, z;
   glm::vec3 color{0.5f};
   float slope = 0.0f;  ///< dz/dx; z is that of the left edge
   float alpha = 1.0f;
 };
 
-inline pipeline::Scene patches(const std::vector<Patch>& list) {
+inline pipeline::Scene patches(const std::vector<Rectangle>& list) {
   pipeline::Scene scene;
   scene.name = "patches";
   scene.materials.clear();
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const Patch& p = list[i];
+    const Rectangle& p = list[i];
     pipeline::Mesh mesh;
     const float z0 = p.z, z1 = p.z + p.slope * (p.right - p.left);
     mesh.positions = {{p.left, -5, z0}, {p.right, -5, z1}, {p.right, 5, z1}, {p.left, 5, z0}};

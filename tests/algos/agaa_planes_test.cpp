@@ -83,7 +83,7 @@ TEST(AgaaPlanes, BackgroundTakesNoAggregate) {
 
 // More planes than aggregates: sample by sample, to the same bits.
 TEST(AgaaPlanes, TilesOfMorePlanesTakeTheSamples) {
-  std::vector<Patch> strips;
+  std::vector<Rectangle> strips;
   for (int i = 0; i < 40; ++i)
     strips.push_back({-2.0f + 0.1f * static_cast<float>(i),
                       -1.95f + 0.1f * static_cast<float>(i),

@@ -151,7 +151,7 @@ TEST(Agaa, TwoAggregatesKeepCorrelatedAttributesApart) {
 
 // More aggregates come closer to lighting every sample.
 TEST(Agaa, MoreAggregatesComeCloserToEverySample) {
-  std::vector<Patch> list;
+  std::vector<Rectangle> list;
   for (int i = 0; i < 40; ++i) {
     const float left = -1.0f + 0.05f * static_cast<float>(i);
     list.push_back({left,
@@ -177,7 +177,7 @@ TEST(Agaa, MoreAggregatesComeCloserToEverySample) {
 // Three walls 2.5 m apart, each in a third of every pixel. A wall that only one sample of a pixel sees may
 // join another; before, hardly any pixel had a third aggregate.
 TEST(Agaa, ThreeWallsAreThreeAggregates) {
-  std::vector<Patch> list;
+  std::vector<Rectangle> list;
   const float pixel = 0.03625f;  // wide, at distance 1
   for (int wall = 0; wall < 2; ++wall) {
     const float distance = 2.0f + 2.5f * static_cast<float>(wall);
@@ -230,13 +230,13 @@ TEST(Agaa, CodesNameExistingAggregatesAndFollowTheDistance) {
 // 4.14: with a large k surfaces join whatever lies between them, if their normals agree; with a small one
 // each step in depth is two.
 TEST(Agaa, KDecidesWhetherDistanceKeepsSurfacesApart) {
-  const auto aggregates = [](const std::vector<Patch>& list, const char* k, const char* more = "") {
+  const auto aggregates = [](const std::vector<Rectangle>& list, const char* k, const char* more = "") {
     const Shot shot{share(patches(list)), std::string("agaa:c=2,k=") + k + more};
     return total(render(shot).trace).technique[algos::AgaaCounters::agaa_aggregates];
   };
-  const std::vector<Patch> parallel = {{-5, 0.02f, 0}, {0.02f, 5, -0.5f}};
-  const std::vector<Patch> crossing = {{-5, 0.02f, -4.518f, glm::vec3(0.5f), 0.9f},
-                                       {0.02f, 5, 0, glm::vec3(0.5f), -0.9f}};
+  const std::vector<Rectangle> parallel = {{-5, 0.02f, 0}, {0.02f, 5, -0.5f}};
+  const std::vector<Rectangle> crossing = {{-5, 0.02f, -4.518f, glm::vec3(0.5f), 0.9f},
+                                           {0.02f, 5, 0, glm::vec3(0.5f), -0.9f}};
   const std::uint64_t covered = aggregates(parallel, "10", ",t=1");
   EXPECT_EQ(aggregates(parallel, "10"), covered);
   EXPECT_EQ(aggregates(parallel, "1"), covered + kHeight);  // a column of pixels has both
@@ -244,15 +244,16 @@ TEST(Agaa, KDecidesWhetherDistanceKeepsSurfacesApart) {
 }
 
 TEST(Agaa, AMeshDrawnTwiceIsTheMeshDrawnOnce) {
-  const Patch a{-0.8f, 0.33f, 0, {0.8f, 0.3f, 0.1f}, 0.7f}, b{-0.2f, 0.9f, 0.1f, {0.1f, 0.6f, 0.9f}, -0.4f};
+  const Rectangle a{-0.8f, 0.33f, 0, {0.8f, 0.3f, 0.1f}, 0.7f},
+      b{-0.2f, 0.9f, 0.1f, {0.1f, 0.6f, 0.9f}, -0.4f};
   const auto once = share(patches({a, b})), twice = share(patches({a, b, a, b, a}));
   const pipeline::Emulation first = render({once, "agaa:c=2"}), second = render({twice, "agaa:c=2"});
   EXPECT_EQ(difference(first.color, second.color, "image"), "");
 }
 
 TEST(Agaa, DrawOrderChangesNothing) {
-  const Patch a{-0.8f, 0.33f, 0, {0.8f, 0.3f, 0.1f}, 0.7f}, b{-0.2f, 0.9f, 0.1f, {0.1f, 0.6f, 0.9f}, -0.4f},
-      c{0.3f, 0.5f, 0.3f, {0.9f, 0.9f, 0.2f}};
+  const Rectangle a{-0.8f, 0.33f, 0, {0.8f, 0.3f, 0.1f}, 0.7f},
+      b{-0.2f, 0.9f, 0.1f, {0.1f, 0.6f, 0.9f}, -0.4f}, c{0.3f, 0.5f, 0.3f, {0.9f, 0.9f, 0.2f}};
   const pipeline::Image x = render({share(patches({a, b, c})), "agaa:c=2"}).color;
   const pipeline::Image y = render({share(patches({c, b, a})), "agaa:c=2"}).color;
   EXPECT_LE(largest_difference(x, y), 2.5f / 255.0f);  // sums round in another order
@@ -364,7 +365,7 @@ TEST(Agaa, GrayStaysGray) {
 
 /// Half as wide as pixels, of two slopes in turn.
 pipeline::Scene slats(float slope) {
-  std::vector<Patch> list;
+  std::vector<Rectangle> list;
   const float half_pixel = 0.03625f;
   for (int i = -20; i < 20; ++i)
     list.push_back({half_pixel * static_cast<float>(i), half_pixel * static_cast<float>(i + 1), 0,

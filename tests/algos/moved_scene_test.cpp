@@ -78,7 +78,8 @@ std::size_t differing_counters(const WorkTrace& a, const WorkTrace& b) {
   if (a.passes.size() != b.passes.size()) return a.passes.size() + b.passes.size();
   std::size_t count = a.peak_memory_bytes == b.peak_memory_bytes ? 0 : 1;
   for (std::size_t i = 0; i < a.passes.size(); ++i) {
-    const auto left = values(total(a.passes[i])), right = values(total(b.passes[i]));
+    const auto left_total = total(a.passes[i]), right_total = total(b.passes[i]);  // values() looks into them
+    const auto left = values(left_total), right = values(right_total);
     for (std::size_t k = 0; k < left.size(); ++k) count += left[k] == right[k] ? 0 : 1;
     if (count == 0 && !difference(a.passes[i], b.passes[i]).empty()) ++count;
   }

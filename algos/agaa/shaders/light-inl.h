@@ -367,10 +367,10 @@ class AggregateLight {
   /// Taps along the main axis, each compared as an ordinary receiver.
   F filtered_shadow() {
     F visible(0.0f);
-    const Vec3<F> middle =
-        u_.on_receiver ? surface_.position + from_center_ +
-                             surface_.normal * (below_ * abs(dot(surface_.normal, surface_.to_eye)))
-                       : surface_.position;
+    const Vec3<F> middle = u_.on_receiver
+                               ? surface_.position + from_center_ +
+                                     surface_.normal * (below_ * abs(dot(surface_.normal, surface_.to_eye)))
+                               : surface_.position;
     s_.loop(kTapBlock, u_.shadow_taps, mask_, [&](int i) HWY_ATTR {
       const auto tap = static_cast<std::size_t>(i);
       const Vec3<F> p = middle + spread_ * F(u_.tap_position[tap]);
