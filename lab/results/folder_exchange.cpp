@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <vector>
 
 #include "pipeline/base/file_descriptor.h"
@@ -37,6 +39,13 @@ std::string name_before(const std::string& file, std::string_view middle) {
   return is_number ? file.substr(1, at - 1) : std::string();
 }
 
+/// Whether the process whose number ends the folder's name has ended.
+bool is_gone(const fs::path& folder) {
+  const std::string name = folder.filename().string();
+  const long process = std::strtol(name.c_str() + name.rfind('-') + 1, nullptr, 10);
+  return process <= 0 || (::kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH);
+}
+
 /// Whether hwsim made the folder and no process works on it. `lock` then keeps others away.
 bool is_abandoned(const fs::path& folder, FileDescriptor& lock) {
   lock = open_folder(folder);
@@ -45,7 +54,7 @@ bool is_abandoned(const fs::path& folder, FileDescriptor& lock) {
     return false;
   std::error_code error;
   return fs::exists(folder / kUnfinishedMark, error) || fs::exists(folder / kManifest, error) ||
-         fs::is_empty(folder, error);
+         (fs::is_empty(folder, error) && is_gone(folder));  // a living run is about to lock and mark it
 }
 
 bool clear(const fs::path& folder) {

@@ -135,7 +135,8 @@ std::vector<std::vector<std::uint8_t>> read_buffers(Report& report, SceneFiles& 
     if (buffer.contains("uri")) {
       out[i] = files.read(buffer["uri"].get_ref<const std::string&>(), element("buffers", i), fault);
     } else if (i > 0 || bin.empty()) {
-      fault = "has no uri; only the first buffer of a GLB may omit it";
+      fault = i > 0 ? "has no uri; only the first buffer of a GLB may omit it"
+                    : "has no uri, and the file has no BIN chunk, or an empty one";
     } else {
       out[i] = std::move(bin);
     }

@@ -3,6 +3,8 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <functional>
@@ -92,7 +94,10 @@ TEST_F(FolderExchange, WhatKilledRunsLeftIsRemovedByTheNext) {
   std::ofstream(make(".results.partial-4711", "half") / kUnfinishedMark);
   fs::remove(fs::path(bench.path(".results.partial-4711")) / "manifest.json");
   make(".results.partial-12", "old, was being removed");
-  fs::create_directories(bench.path(".results.partial-7"));
+  const pid_t ended = ::fork();
+  if (ended == 0) ::_exit(0);
+  ::waitpid(ended, nullptr, 0);
+  fs::create_directories(bench.path(".results.partial-" + std::to_string(ended)));
   EXPECT_EQ(clear_abandoned(bench.path("")), 3u);
   EXPECT_EQ(entries(), 1u) << "the scene alone";
 }
@@ -112,11 +117,12 @@ TEST_F(FolderExchange, FoldersOfOthersAndOfLivingRunsStay) {
   for (const std::string& name : names) make(name, "of another program");
   const fs::path no_mark = make(".thesis.partial-12", "a thesis");
   fs::remove(no_mark / "manifest.json");
+  fs::create_directories(bench.path(".results.partial-" + std::to_string(::getpid())));  // not locked yet
   const fs::path living = make(".results.partial-13", "half");
   const pipeline::FileDescriptor lock(::open(living.c_str(), O_RDONLY | O_DIRECTORY));
   ASSERT_TRUE(lock.lock());
   EXPECT_EQ(clear_abandoned(bench.path("")), 0u);
-  EXPECT_EQ(entries(), 1 + names.size() + 2);
+  EXPECT_EQ(entries(), 1 + names.size() + 3);
 }
 
 }  // namespace
