@@ -96,6 +96,7 @@ class SweepRunner {
 
  private:
   void run(const PlannedPoint& planned) {
+    if (!is_quick(planned)) batch_.write();  // or a kill in its minutes would take results with it
     try {
       Simulator simulator(*planned.plan, *planned.scene, nullptr, session_.traces());
       batch_.add(planned.id, simulator.run(*planned.technique, planned.gpu, nullptr));
@@ -105,6 +106,13 @@ class SweepRunner {
       warn_of_failure(planned, error, session_.observer());
     }
   }
+  /// Whether the point is only timed.
+  bool is_quick(const PlannedPoint& planned) const {
+    return planned.plan->engine != Engine::detailed &&
+           session_.traces().holds(*planned.scene, *planned.technique, planned.gpu,
+                                   {planned.plan->skip, false});
+  }
+
   SweepStore& store_;
   Session& session_;
   ResultBatch batch_;
