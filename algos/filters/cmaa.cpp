@@ -1,5 +1,5 @@
-// CMAA, first version: locally dominant edges, simple shapes and long Z shapes
-// (docs/techniques/filters.md#cmaa). Works in place.
+// CMAA 1.3: locally dominant edges, simple shapes and long Z shapes (docs/techniques/filters.md#cmaa). Works
+// in place.
 #include "algos/filters/shaders/cmaa.h"
 #include "algos/base/frame_parts.h"
 #include "algos/filters/filters.h"
@@ -16,7 +16,7 @@ struct CmaaOptions {
 void describe(OptionList& list, CmaaOptions& o) {
   list.real("threshold", o.threshold, {0.04, 0.125}, "color difference that makes an edge, weighted by luma");
   list.choice("cmaa_avg_quirk", o.average_quirk, "off|on",
-              "pruning takes the mean of four neighbors, as the public port does");
+              "pruning takes the mean of four neighbors, as the public source does");
 }
 
 /// A pass over quads of the image: as many invocations as quads.
@@ -28,9 +28,10 @@ Pass& add_quads(FrameGraph& graph, const char* name, ImageId mask, const Fragmen
   pass.fragment = &program;
   pass.uniforms = std::move(uniforms);
   pass.depth = mask;
-  // Depth 0 is less than the 1 of quads that are still of interest.
+  // Depth 0 is less than the 1 of quads that are still of interest. A program that gives its depth is tested
+  // by it, so it runs everywhere.
   pass.state.depth = {true, program.writes_depth, Compare::less};
-  pass.state.force_early_z = true;
+  pass.state.force_early_z = !program.writes_depth;
   pass.depth_read_only = !program.writes_depth;
   return pass;
 }
@@ -47,7 +48,9 @@ ImageId add_cmaa(FrameGraph& graph, ImageId input, const CmaaOptions& options) {
   const ImageId dominant = graph.add_image({"cmaa_dominant", Format::r8_uint, width, height, 1});
   const ImageId edges = graph.add_image({"cmaa_edges", Format::r8_uint, width, height, 1});
   const ImageId work = graph.add_image({"cmaa_work", Format::rgba8_unorm, width, height, 1});
-  graph.add_clear("cmaa_clear", {dominant, edges});
+  // The public program keeps both edge images from frame to frame and changes their roles: what combining
+  // left of the last frame has no mark. Here each frame is the first one.
+  graph.add_clear("cmaa_first_frame", {dominant});
 
   Pass& find = add_quads(graph, "cmaa_edges", mask, cmaa_edge_program(), uniforms);
   find.state.depth.compare = Compare::always;

@@ -272,8 +272,8 @@ class BinDepth {
     return true;
   }
 
-  /// A full-screen triangle lies in one depth, which is tested before its program runs; the depth that a
-  /// program gives is written afterwards (conservative depth output). One sample a pixel.
+  /// A full-screen triangle lies in one depth, which is tested before its program runs, unless the program
+  /// gives each fragment a depth of its own. One sample a pixel.
   bool test_full_screen_depth(int x, int y, SampleMasks& masks, PassCounters& n) {
     const int block = c_.depth->block_index(x, y);
     const auto index = static_cast<std::size_t>(block);
@@ -302,11 +302,36 @@ class BinDepth {
     return masks.count != 0;
   }
 
-  void write_full_screen_depth(const FragmentBatch& batch, int block) {
-    for (std::uint64_t lanes = batch.active_lanes & ~batch.discarded_lanes; lanes != 0; lanes &= lanes - 1) {
+  /// Full-screen programs' own depth is tested when it is known; early tests cannot be forced then.
+  bool gives_depth() const {
+    const DepthState& depth = w_.state->depth;
+    return w_.program->writes_depth && c_.depth != nullptr && (depth.test || depth.write);
+  }
+
+  /// The depth that the program gave each lane, tested and written after it.
+  void test_given_depth(const FragmentBatch& batch, int x, int y, SampleMasks& masks) {
+    const std::uint64_t tested = masks.count;
+    if (tested == 0) return;
+    const int block = c_.depth->block_index(x, y);
+    c_.depth->use(block);
+    touch_depth_tile(block);
+    const Compare compare = w_.state->depth.test ? w_.state->depth.compare : Compare::always;
+    std::uint64_t passed = 0;
+    for (std::uint64_t lanes = masks.lanes[0]; lanes != 0; lanes &= lanes - 1) {
       const int lane = __builtin_ctzll(lanes);
-      c_.depth->block(block)[lane] = depth_bits(batch.depth[lane], c_.depth_scale);
+      const std::uint32_t z = depth_bits(batch.depth[lane], c_.depth_scale);
+      std::uint32_t& stored = c_.depth->block(block)[lane];
+      if (!depth_passes(compare, z, stored)) continue;
+      passed |= std::uint64_t{1} << lane;
+      if (w_.state->depth.write) stored = z;
     }
+    masks.keep(passed, 0, samples_, samples_);
+    PassCounters& n = w_.counters();
+    track_depth(block, tested, masks.count);
+    n.zrop.late_z_tested_samples += tested;
+    n.zrop.late_z_killed_samples += tested - masks.count;
+    count_depth_traffic(tested, masks.count, n);
+    if (!w_.state->depth.write || passed == 0) return;
     read_bounds(*c_.depth, block);
     c_.depth->unsaved[static_cast<std::size_t>(block)] = 1;
   }

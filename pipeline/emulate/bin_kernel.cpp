@@ -272,6 +272,7 @@ class BinRunner : private BinShading {
     PassCounters& n = w_.counters();
     n.raster.visited_tiles += 1;
     n.raster.covered_samples += masks.count;
+    if (gives_depth()) return append_tile(nullptr, nullptr, nullptr, x, y, masks, n);
     if (w_.state->depth.test) {
       if (!test_full_screen_depth(x, y, masks, n)) return;
     } else if (c_.depth != nullptr && w_.state->stencil.test && !w_.late_z) {

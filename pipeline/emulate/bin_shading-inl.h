@@ -56,13 +56,13 @@ class BinShading : protected BinColor {
     set_up_tile(batch, x, y, centroid ? AttributeLocation::centroid : AttributeLocation::center,
                 c_.coverage_positions, 0);
     shade(batch, false);
-    if (w_.program->writes_depth && w_.state->depth.write) write_full_screen_depth(batch, block);
     add_tile_heat(batch, x, y);
-    if (batch.discarded_lanes == 0 && !w_.late_z && !masks_output_)
+    if (batch.discarded_lanes == 0 && !w_.late_z && !masks_output_ && !gives_depth())
       return write_tile(batch, block, masks.lanes, 0, samples_);
     SampleMasks kept = masks;
     apply_output_mask(batch, 0, samples_, kept);
     kept.keep(~batch.discarded_lanes, 0, samples_, samples_);
+    if (gives_depth()) test_given_depth(batch, x, y, kept);
     if (w_.late_z) test_tile_late(t, x, y, kept);
     if (follows_map_ && w_.late_z) insert_tile(*t, x, y, kept.lanes, primitive_masks_.lanes);
     write_tile(batch, block, kept.lanes, 0, samples_);

@@ -214,10 +214,10 @@ class Validator {
         tell("G004", "pass `" + pass.name + "` reads image " + text(image) + " while it stores to it");
       mark_written(pass.targets[slot]);
     }
-    const bool writes = pass.kind == PassKind::full_screen && pass.state.depth.write;
-    if (writes && (pass.fragment == nullptr || !pass.fragment->writes_depth || pass.samples != 1))
-      tell("G007",
-           "full-screen pass `" + pass.name + "` writes depth, which its program must give, at one sample");
+    const bool gives = pass.fragment != nullptr && pass.fragment->writes_depth && !pass.state.force_early_z;
+    if (pass.kind == PassKind::full_screen && pass.state.depth.write && (!gives || pass.samples != 1))
+      tell("G007", "full-screen pass `" + pass.name +
+                       "` writes depth, which its program must give, at one sample and without early tests");
   }
 
   void check_size(const Pass& pass, const ImageDesc& image) {

@@ -101,18 +101,27 @@ TEST(Cmaa, TakesTheMemoryOfItsTableAndWorksInPlace) {
   EXPECT_EQ(bytes_of("cmaa", p), 64u * 32u * 4 + 64u * 32u * 15 / 2);
 }
 
-TEST(Cmaa, LaterPassesRunOnlyWhereEdgesAre) {
+/// The pass that combines gives the depth that is tested, so nothing rejects a quad before it.
+TEST(Cmaa, LaterPassesRunOnlyWhereEdgesAreButForCombining) {
   const Picture p = step(128);
   const Filtered f = filter(p, "cmaa");
-  const auto invocations = [&](const std::string& name) {
+  const auto counters = [&](const std::string& name) {
     for (const PassWork& pass : f.trace.passes)
-      if (pass.name == name) return total(pass).ps.invocations;
-    return std::uint64_t{0};
+      if (pass.name == name) return total(pass);
+    return PassCounters{};
   };
+  const auto invocations = [&](const std::string& name) { return counters(name).ps.invocations; };
   EXPECT_EQ(invocations("cmaa_edges"), 64u * 16u);
   EXPECT_GE(invocations("cmaa_prune"), 64u);  // the quads of one row, and those of the other half
   EXPECT_LE(invocations("cmaa_prune"), 130u);
+  EXPECT_EQ(invocations("cmaa_combine"), 64u * 16u);
   EXPECT_LT(invocations("cmaa_blend"), 8u);
+  const PassCounters combine = counters("cmaa_combine");
+  EXPECT_EQ(combine.hiz.tested_tiles, 0u);
+  EXPECT_EQ(combine.zrop.late_z_tested_samples, 64u * 16u);
+  // What passes are marked quads that lose their mark.
+  EXPECT_EQ(combine.zrop.late_z_tested_samples - combine.zrop.late_z_killed_samples,
+            invocations("cmaa_prune") - invocations("cmaa_blend"));
 }
 
 }  // namespace

@@ -10,7 +10,8 @@ namespace {
 struct PixelEdges {
   bool right = false, top = false, left = false, bottom = false;
   int count() const { return (right ? 1 : 0) + (top ? 1 : 0) + (left ? 1 : 0) + (bottom ? 1 : 0); }
-  PixelEdges transposed() const { return {bottom, left, top, right}; }
+  /// A quarter turn clockwise: what lies above comes to the right.
+  PixelEdges turned() const { return {top, left, bottom, right}; }
   /// Upside down.
   PixelEdges flipped() const { return {right, bottom, left, top}; }
 };
@@ -23,8 +24,8 @@ class CmaaOracle {
     combine();
     for_each([&](int x, int y) { blend_simple(x, y); });
     for_each([&](int x, int y) {
-      blend_line(x, y, false);
-      blend_line(x, y, true);
+      const Direction d = direction(x, y);
+      if (d != Direction::none) blend_line(x, y, d == Direction::column);
     });
   }
   const Picture& result() const { return out_; }
@@ -91,15 +92,16 @@ class CmaaOracle {
       return inside(x, y) ? kept_[index(x, y)] : std::pair(false, false);
     };
     for_each([&](int x, int y) {
-      if (!quad_has_edge(x, y)) return;
       edges_[index(x, y)] = {kept(x, y).first, kept(x, y - 1).second, kept(x - 1, y).first,
                              kept(x, y).second};
     });
   }
   PixelEdges edges(int x, int y) const { return inside(x, y) ? edges_[index(x, y)] : PixelEdges{}; }
 
-  /// The mask of the last pass: a pixel of the quad has two edges.
+  /// The mask of the last pass: a pixel of the quad has two edges, and one of them leaves the quad's pixels
+  /// to the right or below.
   bool quad_is_blended(int x, int y) const {
+    if (!quad_has_edge(x, y)) return false;
     bool any = false;
     for (int p = 0; p < 4; ++p) any = any || edges((x & ~1) + (p & 1), (y & ~1) + (p >> 1)).count() > 1;
     return any;
@@ -112,8 +114,9 @@ class CmaaOracle {
   void blend_simple(int x, int y) {
     const PixelEdges e = edges(x, y);
     const int n = e.count();
+    if (!quad_is_blended(x, y)) return;
     if (n < 2 || (n == 2 && ((e.right && e.left) || (e.top && e.bottom)))) return;
-    const float share = n == 2 ? 0.15f : n == 3 ? 0.13f : 0.07f;
+    const float share = n == 2 ? 0.08f : n == 3 ? 0.11f : 0.05f;
     Rgb sum = in_.color(x, y);
     const auto add = [&](bool edge, int dx, int dy) {
       const Rgb c = in_.color(x + dx, y + dy);
@@ -130,26 +133,39 @@ class CmaaOracle {
   /// Edges of a pixel as a horizontal line sees them; `flip`: the other way up.
   PixelEdges seen(int x, int y, bool column, bool flip) const {
     PixelEdges e = edges(x, y);
-    if (column) e = e.transposed();
+    if (column) e = e.turned();
     return flip ? e.flipped() : e;
   }
 
-  bool is_z(int x, int y, bool column, bool flip, bool& continued) const {
-    const int dx = column ? 0 : 1, dy = 1 - dx;
+  enum class Direction { none, row, column };
+  /// A pixel's line goes one way: along its row, or up its column.
+  Direction direction(int x, int y) const {
+    const PixelEdges e = edges(x, y), before = edges(x - 1, y), after = edges(x + 1, y),
+                     above = edges(x, y - 1);
+    if (!quad_is_blended(x, y) || e.count() != 2) return Direction::none;
+    const bool row_a = e.right && e.bottom && after.top && !after.right;
+    const bool row_b = e.right && e.top && after.bottom && !after.right;
+    const bool column_a = e.top && e.right && above.left && !above.top;
+    const bool column_b = e.top && e.left && above.right && !above.top;
+    const bool row = row_a || row_b, column = column_a || column_b;
+    if (row && column)
+      return (row_a && before.bottom) || (row_b && before.top) ? Direction::row : Direction::column;
+    return row ? Direction::row : column ? Direction::column : Direction::none;
+  }
+
+  bool is_z(int x, int y, bool column, bool flip) const {
+    const int dx = column ? 0 : 1, dy = column ? -1 : 0;
     const PixelEdges own = seen(x, y, column, flip), next = seen(x + dx, y + dy, column, flip);
     const bool after = seen(x + 2 * dx, y + 2 * dy, column, flip).bottom;
-    continued = seen(x - dx, y - dy, column, flip).top;
+    const bool continued = seen(x - dx, y - dy, column, flip).top;
     return own.right && own.top && !own.left && !own.bottom && next.bottom && !next.right && !next.top &&
            (continued || after);
   }
 
   void blend_line(int x, int y, bool column) {
-    if (!quad_is_blended(x, y)) return;
-    bool goes_on = false, flipped_goes_on = false;
-    const bool normal = is_z(x, y, column, false, goes_on), other = is_z(x, y, column, true, flipped_goes_on);
-    if (!normal && !other) return;
-    const bool flip = other && (!normal || (!goes_on && flipped_goes_on));
-    const int dx = column ? 0 : 1, dy = 1 - dx;
+    const bool flip = is_z(x, y, column, true);
+    if (!flip && !is_z(x, y, column, false)) return;
+    const int dx = column ? 0 : 1, dy = column ? -1 : 0;
     int before = 1, after = 1;
     for (int n = 1; n < 64; ++n) {
       const PixelEdges b = seen(x - n * dx, y - n * dy, column, flip);

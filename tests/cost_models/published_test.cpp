@@ -116,8 +116,8 @@ TEST(Published, EveryRowHasAUseAndWhatIsNotFittedAReason) {
     }
   }
   // SSS 8 frames + 6 without the exit + 18 stages, SBAA 24 analyses + 16 references + 46 of 48 changes,
-  // AXAA 14 of 16, AGAA 70 stages.
-  EXPECT_EQ(uses[RowUse::fitted], 8 + 6 + 18 + 24 + 16 + 46 + 14 + 70);
+  // AXAA 15 of 16, AGAA 70 stages.
+  EXPECT_EQ(uses[RowUse::fitted], 8 + 6 + 18 + 24 + 16 + 46 + 15 + 70);
   EXPECT_EQ(uses[RowUse::count], 8 + 24 - 3 + 8);
 }
 
@@ -155,7 +155,11 @@ TEST(Published, RunWithoutItsLightsHasTheOtherSettingsAsTheyWere) {
 TEST(Published, ContradictedRowsAreLeftOut) {
   for (const Cell& cell : all_cells()) {
     const PublishedRow& r = cell.row;
-    const bool contradicted = r.quantity == "fps" || (r.gpu == "Radeon HD 7650M" && r.technique == "CMAA");
+    const bool contradicted = r.quantity == "fps";
+    // The paper's own "2.3 times faster" is of this row.
+    if (r.gpu == "Radeon HD 7650M" && r.technique == "CMAA") {
+      EXPECT_EQ(cell.use, RowUse::fitted) << r.id();
+    }
     const bool sum = r.document == "AGAA" && r.pass == "frame" && r.quantity == "time_ms";
     if (contradicted) {
       EXPECT_EQ(cell.use, RowUse::excluded) << r.id();

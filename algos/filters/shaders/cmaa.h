@@ -7,13 +7,15 @@ namespace hwsim::algos {
 
 struct CmaaUniforms {
   float threshold = 1.0f / 13.0f;
-  bool average_quirk = true;  ///< pruning takes the mean of the last four neighbors, as the public port does
+  bool average_quirk =
+      true;  ///< pruning takes the mean of the last four neighbors, as the public source does
 };
 
 /// Image slot 0: perceptual color. Strengths of each pixel's edges to the right and below, four bits each;
-/// depth 1 where there are some. Pixels at edges are copied to target 0.
+/// depth 1 where there are some. Pixels at such edges are copied to target 0.
 const pipeline::FragmentProgram& cmaa_edge_program();
-/// Image slot 0: strengths. Target 0: locally dominant edges, bit 0 to the right, bit 1 below, and bit 7.
+/// Image slot 0: strengths. Target 0, where a pixel has some: locally dominant edges, bit 0 to the right, bit
+/// 1 below, and bit 7.
 const pipeline::FragmentProgram& cmaa_prune_program();
 /// Image slot 0: dominant edges. Target 0: all four edges of each pixel; depth 1 where a pixel has two or
 /// more.
