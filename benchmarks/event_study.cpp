@@ -26,10 +26,10 @@ using pipeline::FragmentBatch;
 using pipeline::FrameGraph;
 
 constexpr int kSamples = 8;
-/// Configured to lose nothing (AGAA, section 5): whatever differs makes a pixel complex. Attributes at pixel
-/// centers, as for the published times (configs/published/mapping/techniques.csv).
+/// Configured to lose nothing (AGAA, section 5; docs/techniques/deferred.md#simple-and-complex). Attributes
+/// at pixel centers, as for the published times (configs/published/mapping/techniques.csv).
 constexpr const char* kReference =
-    "deferred_simple_complex:samples=8,normal_dot_min=0.999999,compare_all=on,centroid=off";
+    "deferred_simple_complex:samples=8,z_scale=0,normal_dot_min=1,centroid=off";
 constexpr const char* kAggregates = "agaa:c=2,msaa=8";
 constexpr const char* kTop = "sbaa_top:n=6,msaa=8,centroid=off";
 constexpr const char* kMerge = "sbaa_merge:n=6,msaa=8,centroid=off";

@@ -146,6 +146,7 @@ class Builder {
                         (o_.plane_path == AgaaPlanePath::automatic && features_.compressed_depth_read);
     const bool planes = layers_ == 1 && wanted;
     u->reads_planes = planes;
+    u->empty_exit = o_.empty_exit;
     Pass& pass = add_frame_compute(graph_, "define", agaa_define_program(), std::move(u));
     pass.sampled = {depth_, normal_};
     pass.targets = {codes_};

@@ -41,6 +41,7 @@ struct AgaaOptions {
   AgaaAccumulate accumulate = AgaaAccumulate::automatic;
   bool centroid = true;
   AgaaPlanePath plane_path = AgaaPlanePath::automatic;
+  bool empty_exit = false;
   bool alpha_dither = true;
   AgaaShadowAxis shadow_axis = AgaaShadowAxis::receiver;
 };

@@ -127,11 +127,11 @@ void add_classify_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer
 }
 
 /// Shaders cannot write single samples of a multisampled image (D3D11, GL): the tiles write a buffer of
-/// samples, as in Lauritzen's program, and a full-screen pass at sample rate brings it to the render target.
-/// With layout=gb_lauritzen that makes the 40 bytes a sample of SBAA's reference
-/// (docs/techniques/deferred.md#g-buffers).
-void add_tile_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
-                   std::shared_ptr<const void> uniforms) {
+/// samples, which the last pass reads and averages, as in Lauritzen's program. That program also holds the
+/// multisampled target that its other ways of lighting draw to: with layout=gb_lauritzen both make the 40
+/// bytes a sample of SBAA's reference (docs/techniques/deferred.md#g-buffers).
+void add_tile_passes(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
+                     std::shared_ptr<const void> uniforms) {
   const ImageId samples =
       graph.add_image({"lit_samples", g.layout->lit, graph.width(), graph.height(), g.samples});
   Pass& pass =
@@ -139,13 +139,10 @@ void add_tile_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
                         std::move(uniforms));
   pass.targets = {samples};
   bind_gbuffer(pass, parts, g);
-  Pass& copy = graph.add_pass("copy_lit", PassKind::full_screen);
-  copy.samples = g.samples;
-  copy.color = {g.lit};
-  copy.sampled = {samples};
-  copy.fragment = &copy_samples_program();
-  copy.uniforms = std::make_shared<int>();  // the program reads nothing of it
-  copy.state.raster.sample_rate = true;
+  const ImageId output = add_output(graph);
+  add_full_screen(graph, "resolve", {samples}, output, merge_program(),
+                  std::make_shared<MergeUniforms>(MergeUniforms{g.samples}));
+  add_over_output(graph, parts, output, g.depth, {}, true);
 }
 
 void finish(FrameGraph& graph, const FrameParts& parts, const GBuffer& g) {
@@ -197,14 +194,14 @@ FrameGraph build_simple_complex(const FrameRequest& request, const SimpleComplex
   uniforms->z_scale = static_cast<float>(options.z_scale);
   uniforms->compare_all = options.compare_all;
   if (options.lighting == DeferredLighting::compute_tiles) {
-    add_tile_pass(graph, parts, g, uniforms);
-  } else {
-    add_classify_pass(graph, parts, g, uniforms);
-    select_by_stencil(add_light_pass(graph, parts, g, "light_simple", uniforms), g, 0);
-    Pass& complex = add_light_pass(graph, parts, g, "light_complex", uniforms);
-    select_by_stencil(complex, g, 1);
-    complex.state.raster.sample_rate = true;
+    add_tile_passes(graph, parts, g, uniforms);
+    return graph;
   }
+  add_classify_pass(graph, parts, g, uniforms);
+  select_by_stencil(add_light_pass(graph, parts, g, "light_simple", uniforms), g, 0);
+  Pass& complex = add_light_pass(graph, parts, g, "light_complex", uniforms);
+  select_by_stencil(complex, g, 1);
+  complex.state.raster.sample_rate = true;
   finish(graph, parts, g);
   return graph;
 }

@@ -15,6 +15,7 @@ struct SbaaOptions {
   int record_bytes = 32;
   SbaaBackground background = SbaaBackground::weighted;
   bool centroid = true;
+  bool empty_exit = false;
 };
 void describe(OptionList& list, SbaaOptions& o);
 

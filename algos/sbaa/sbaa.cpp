@@ -18,7 +18,7 @@ struct Setup {
   int slots = 2;
   int id_bits = 7;
   int record_bytes = kFullRecordBytes;
-  bool weigh_background = true, centroid = true;
+  bool weigh_background = true, centroid = true, empty_exit = false;
   SbaaSample sample = SbaaSample::id;
   float cos_alpha = 0.0f, end_region = 0.0f;
   bool linear_depth = false;
@@ -36,6 +36,7 @@ Setup make_setup(const SbaaOptions& options) {
   o.record_bytes = 4 * ((options.record_bytes + 3) / 4);  // whole words
   o.weigh_background = options.background == SbaaBackground::weighted;
   o.centroid = options.centroid;
+  o.empty_exit = options.empty_exit;
   if (o.slots > o.samples) {
     Diagnostic error;
     error.code = "T003";
@@ -125,14 +126,13 @@ void add_analysis_pass(FrameGraph& graph, const FrameParts& parts, const Setup& 
   u->cos_alpha = o.cos_alpha;
   u->end_region = o.end_region;
   u->linear_depth = o.linear_depth;
+  u->empty_exit = o.empty_exit;
   u->view_from_clip = parts.view_from_clip;
   Pass& pass = add_frame_compute(graph, "analysis", sbaa_analysis_program(o.sample, o.id_bits), std::move(u));
   pass.sampled = {images.id};
   if (images.normal) pass.sampled.push_back(images.normal);
   if (o.merges()) pass.sampled.push_back(images.depth);
   pass.targets = {images.surfaces};
-  pass.storage = {images.records};
-  pass.storage_written = 1;
 }
 
 DrawBatch record_batch(const FrameGraph& graph, const FrameParts& parts, const Setup& o,
@@ -255,6 +255,8 @@ void describe(OptionList& list, SbaaOptions& o) {
   list.choice("background", o.background, "weighted|ignore",
               "whether background samples weigh in at partly covered pixels");
   describe_centroid(list, o.centroid);
+  list.choice("empty_exit", o.empty_exit, "off|on",
+              "whether the analysis leaves pixels that nothing was drawn to at once");
 }
 
 void describe(OptionList& list, SbaaMergeOptions& o) {

@@ -96,7 +96,17 @@ void find_lifetimes(const FrameGraph& graph, const std::vector<Access>& accesses
   compiled.buffers.assign(all.begin() + images, all.end());
 }
 
-void sum_memory(const FrameGraph& graph, CompiledGraph& compiled) {
+/// Images that no pass names: a program holds them for other techniques than the one that runs.
+std::vector<char> find_idle(const FrameGraph& graph, const std::vector<Access>& accesses) {
+  std::vector<char> idle(graph.images().size(), 1);
+  for (const Access& a : accesses)
+    for (const auto* list : {&a.reads, &a.writes})
+      for (const int r : *list)
+        if (static_cast<std::size_t>(r) < idle.size()) idle[static_cast<std::size_t>(r)] = 0;
+  return idle;
+}
+
+void sum_memory(const FrameGraph& graph, const std::vector<Access>& accesses, CompiledGraph& compiled) {
   std::vector<std::uint64_t> live(compiled.order.size() + 1, 0);
   const auto add = [&](const CompiledGraph::Lifetime& life, std::uint64_t bytes) {
     if (life.first_pass < 0) return;
@@ -108,6 +118,9 @@ void sum_memory(const FrameGraph& graph, CompiledGraph& compiled) {
   for (std::size_t i = 0; i < compiled.buffers.size(); ++i)
     add(compiled.buffers[i], allocated_bytes(graph.buffers()[i]));
   compiled.peak_bytes = *std::max_element(live.begin(), live.end());
+  const std::vector<char> idle = find_idle(graph, accesses);
+  for (std::size_t i = 0; i < idle.size(); ++i)
+    if (idle[i] != 0) compiled.allocated_bytes += allocated_bytes(graph.images()[i]);
 }
 
 enum class Use { none, contents, overwritten };
@@ -174,7 +187,7 @@ CompiledGraph compile(const FrameGraph& graph, const GpuFeatures& features,
     (needed[i] != 0 ? compiled.order : compiled.culled).push_back(static_cast<int>(i));
   find_barriers(accesses, compiled, graph.images().size() + graph.buffers().size());
   find_lifetimes(graph, accesses, compiled);
-  sum_memory(graph, compiled);
+  sum_memory(graph, accesses, compiled);
   return compiled;
 }
 

@@ -207,7 +207,7 @@ struct CompiledGraph {
                                      ///< the last barrier wrote
   std::vector<Lifetime> images, buffers;
   std::uint64_t peak_bytes = 0;       ///< the largest sum of live images and buffers
-  std::uint64_t allocated_bytes = 0;  ///< sum over all that are used, without reuse of memory
+  std::uint64_t allocated_bytes = 0;  ///< sum over all but those of culled passes, without reuse of memory
 };
 
 /// What a GPU with tile memory has to do for an attachment of a pass.

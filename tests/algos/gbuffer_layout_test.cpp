@@ -130,6 +130,25 @@ TEST(SimpleComplex, FindsAWallSimpleInEveryLayout) {
           << layout.id << ", " << lighting;
 }
 
+// The tiles' samples go to the image at once, as in Lauritzen's program: no pass brings them to a
+// multisampled target, which is in memory all the same. Both ways of lighting show the same picture.
+TEST(SimpleComplex, TilesAreResolvedFromTheirBuffer) {
+  const auto scene = generated_scene("sponza_hall");
+  const pipeline::FrameGraph graph =
+      build_graph("deferred_simple_complex:lighting=compute,samples=4", scene, 160, 90);
+  std::vector<std::string> names;
+  for (const pipeline::Pass& pass : graph.passes()) {
+    names.push_back(pass.name);
+    for (const pipeline::ImageId target : pass.color) EXPECT_NE(graph.image(target).name, "lit") << pass.name;
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"clear", "gbuffer", "light_tiles", "resolve"}));
+  EXPECT_TRUE(image_named(graph, "lit"));
+  const auto by_tiles = run_graph(graph).color;
+  const auto by_stencil = run_graph(build_graph("deferred_simple_complex:samples=4", scene, 160, 90)).color;
+  for (std::size_t i = 0; i < by_tiles.pixels.size(); ++i)
+    ASSERT_LE(code_difference(by_tiles.pixels[i], by_stencil.pixels[i]), 1.5) << i;
+}
+
 // Shaded = pixels + (N - 1) complex ones; stricter criteria find more of them.
 TEST(SimpleComplex, CriteriaDecideWhatIsShaded) {
   const auto scene = generated_scene("sponza_hall");

@@ -105,6 +105,7 @@ TEST(Options, NamesOfAgaaMeanTheirFields) {
                                 FIELD("accumulate", o.accumulate),
                                 FIELD("centroid", o.centroid),
                                 FIELD("plane_path", o.plane_path),
+                                FIELD("empty_exit", o.empty_exit),
                                 FIELD("a2c_dither", o.alpha_dither),
                                 FIELD("shadow_axis", o.shadow_axis)});
   EXPECT_EQ(part_of("agaa:c=3").options.as<Struct>().aggregates, 3);
@@ -118,8 +119,9 @@ TEST(Options, NamesOfSbaaMeanTheirFields) {
       "sbaa_merge",
       {FIELD("n", o.sbaa.surfaces), FIELD("msaa", o.sbaa.samples), FIELD("id_bits", o.sbaa.id_bits),
        FIELD("record_bytes", o.sbaa.record_bytes), FIELD("background", o.sbaa.background),
-       FIELD("centroid", o.sbaa.centroid), FIELD("alpha", o.alpha_rad), FIELD("end_region", o.end_region),
-       FIELD("merge_depth", o.merge_depth), FIELD("pack_id_normal", o.pack_id_normal)});
+       FIELD("centroid", o.sbaa.centroid), FIELD("empty_exit", o.sbaa.empty_exit),
+       FIELD("alpha", o.alpha_rad), FIELD("end_region", o.end_region), FIELD("merge_depth", o.merge_depth),
+       FIELD("pack_id_normal", o.pack_id_normal)});
 }
 
 template <class Struct>

@@ -320,6 +320,35 @@ TEST(Sbaa, ShowsTheBackgroundWhereNothingIs) {
   EXPECT_GT(edges, kHeight / 2);
 }
 
+pipeline::Emulation small_triangle(const std::string& technique) {
+  const auto scene = share(faceted_scene({{-0.2f, -0.2f, -5}, {0.2f, -0.2f, -5}, {0.1f, 0.2f, -5}}));
+  return run_graph(build_graph(technique, scene, 64, 64));
+}
+
+PassCounters counters_of(const pipeline::Emulation& e, const std::string& pass) {
+  const auto at =
+      std::ranges::find_if(e.trace.passes, [&](const PassWork& work) { return work.name == pass; });
+  return at == e.trace.passes.end() ? PassCounters{} : total(*at);
+}
+
+// The analysis takes its first iteration everywhere: what it costs does not depend on what is covered. With
+// empty_exit=on groups of empty pixels are left; the picture is the same.
+TEST(SbaaAnalysis, CostsWhatItCostsWhereverNothingIs) {
+  for (const std::string technique : {"sbaa_top:n=2", "sbaa_merge:n=2"}) {
+    const auto all = small_triangle(technique), some = small_triangle(technique + ",empty_exit=on");
+    EXPECT_TRUE(all.color.pixels == some.color.pixels);
+    EXPECT_GT(counters_of(all, "analysis").shader.alu_lane_ops,
+              counters_of(some, "analysis").shader.alu_lane_ops * 3 / 2)
+        << technique;
+  }
+}
+
+// The analysis writes surfaces and no record: these come from the G-buffer pass alone.
+TEST(SbaaAnalysis, WritesTwoBytesASurfaceAndNoRecord) {
+  const auto e = small_triangle("sbaa_top:n=2");
+  EXPECT_EQ(counters_of(e, "analysis").mem.storage_write_bytes, 64u * 64u * 2u * 2u);
+}
+
 // Without its G-buffer pass every chosen slot stays empty: skipped, and the pixel shows the background.
 TEST(Sbaa, SkipsSlotsThatNothingWasWrittenTo) {
   const auto scene = share(faceted_scene({{-9, -9, -5}, {9, -9, -5}, {0.1f, 9, -5}}));

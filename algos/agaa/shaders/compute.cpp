@@ -164,6 +164,7 @@ class Clusters {
       normal_sum = normal_sum + sample_[n].normal * one;
     });
     covered_ = s_.valid() & (count > F(0.5f));
+    running_ = u_.empty_exit ? covered_ : s_.valid();
     const F share = F(1.0f) / max(count, F(1.0f));
     mean_.position = position_sum * share;
     mean_.normal = normal_sum * share;
@@ -197,7 +198,7 @@ class Clusters {
 
   void find_first_seed() {
     F farthest(-1.0f);
-    s_.loop(kFirstSeedBlock, u_.samples, covered_, [&](int i) HWY_ATTR {
+    s_.loop(kFirstSeedBlock, u_.samples, running_, [&](int i) HWY_ATTR {
       const auto n = static_cast<std::size_t>(i);
       const F d = distance(sample_[n], mean_);
       const M better = visible_[n] & (d > farthest);
@@ -205,7 +206,7 @@ class Clusters {
       seed_[0] = pick(better, sample_[n], seed_[0]);
     });
     exists_[0] = covered_;
-    add_distances(0, covered_);
+    add_distances(0, running_);
     s_.count(AgaaCounters::agaa_aggregates, covered_);
   }
 
@@ -225,17 +226,19 @@ class Clusters {
     const auto index = static_cast<std::size_t>(j);
     const M open = exists_[index - 1];
     exists_[index] = F(1.0f) < F(0.0f);
-    s_.branch(kSeedBlock, open, [&]() HWY_ATTR {
+    // Where the search ended, nothing is tried; that a pixel is empty is not asked before the second seed.
+    const M tried = j == 1 ? running_ : open;
+    s_.branch(kSeedBlock, tried, [&]() HWY_ATTR {
       F farthest(-1.0f);
       SurfaceSample<F> candidate = first_;
-      s_.loop(kFarthestBlock, u_.samples, open, [&](int i) HWY_ATTR {
+      s_.loop(kFarthestBlock, u_.samples, tried, [&](int i) HWY_ATTR {
         const auto n = static_cast<std::size_t>(i);
         const M better = visible_[n] & (far_[n] > farthest);
         farthest = select(better, far_[n], farthest);
         candidate = pick(better, sample_[n], candidate);
       });
       M apart = open;
-      s_.loop(kApartBlock, j, open, [&](int i) HWY_ATTR {
+      s_.loop(kApartBlock, j, tried, [&](int i) HWY_ATTR {
         apart = apart & !(distance(candidate, seed_[static_cast<std::size_t>(i)]) < F(u_.separation));
       });
       seed_[index] = candidate;
@@ -248,11 +251,11 @@ class Clusters {
   void assign() {
     const int bits = u_.code_bits;
     if (bits == 0) return;
-    s_.loop(kAssignBlock, u_.samples, covered_, [&](int i) HWY_ATTR {
+    s_.loop(kAssignBlock, u_.samples, running_, [&](int i) HWY_ATTR {
       const auto n = static_cast<std::size_t>(i);
       F nearest(1e30f);
       I code(0);
-      s_.loop(kNearestBlock, u_.aggregates, covered_, [&](int a) HWY_ATTR {
+      s_.loop(kNearestBlock, u_.aggregates, running_, [&](int a) HWY_ATTR {
         const auto seed = static_cast<std::size_t>(a);
         const F d = distance(sample_[n], seed_[seed]);
         const M nearer = exists_[seed] & (d < nearest);
@@ -306,6 +309,7 @@ class Clusters {
   std::array<SurfaceSample<F>, 4> seed_{};
   std::array<M, 4> exists_;
   M covered_;
+  M running_;  ///< pixels whose samples are clustered
   F inv_k2_;
   std::array<I, 4> words_ = {I(0), I(0), I(0), I(0)};  ///< the codes
   static constexpr int kOnlyBackground = 5;

@@ -67,6 +67,7 @@ struct DefineUniforms {
   float separation = 0.02f;  ///< t
   bool unit_mean_normal = true;
   SeedRule seeds = SeedRule::farthest;
+  bool empty_exit = false;    ///< pixels without a surface are left after their samples were read
   bool reads_planes = false;  ///< tiles that depth compression holds as few planes take those for aggregates
 };
 /// Pass 2: image 0 depth, 1 normal codes; target 0 the codes, eight samples a layer.

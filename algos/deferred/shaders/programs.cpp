@@ -64,16 +64,6 @@ struct DeferredLightShader {
   }
 };
 
-/// Each sample of image 0 to the same sample of the target.
-struct CopySamplesShader {
-  struct Uniforms {};
-  template <class S>
-  static void run(S& s, const Uniforms&) {
-    const int index = s.sample_index() < 0 ? 0 : s.sample_index();
-    s.output(0, s.load_image(0, s.pixel_x(), s.pixel_y(), typename S::I(index)));
-  }
-};
-
 // One entry for each encoding, in the order of GBufferEncoding.
 using E = GBufferEncoding;
 template <class Shader>
@@ -92,7 +82,6 @@ constexpr Run kLight[] = {run<DeferredLightShader<E::gradients>>, run<DeferredLi
 void run_gbuffer(int which, pipeline::FragmentBatch& b, const void* u) { kGBuffer[which](b, u); }
 void run_classify(int which, pipeline::FragmentBatch& b, const void* u) { kClassify[which](b, u); }
 void run_light(int which, pipeline::FragmentBatch& b, const void* u) { kLight[which](b, u); }
-void run_copy_samples(pipeline::FragmentBatch& b, const void* u) { run<CopySamplesShader>(b, u); }
 }  // namespace hwsim::algos::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -101,7 +90,6 @@ namespace hwsim::algos {
 HWY_EXPORT(run_gbuffer);
 HWY_EXPORT(run_classify);
 HWY_EXPORT(run_light);
-HWY_EXPORT(run_copy_samples);
 
 namespace {
 using pipeline::FragmentBatch;
@@ -118,7 +106,6 @@ template <int kWhich>
 void call_light(FragmentBatch& b, const void* u) {
   HWY_DYNAMIC_DISPATCH(run_light)(kWhich, b, u);
 }
-void call_copy_samples(FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_copy_samples)(b, u); }
 
 template <GBufferEncoding kEncoding, bool kAlphaTest>
 FragmentProgram describe_gbuffer(bool full, bool extended) {
@@ -194,13 +181,6 @@ const FragmentProgram& deferred_light_program(GBufferEncoding encoding, bool ext
   return choose(encoding, [&](const auto& programs) -> const FragmentProgram& {
     return programs.light[extended ? 1 : 0];
   });
-}
-
-const FragmentProgram& copy_samples_program() {
-  static const FragmentProgram program =
-      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::CopySamplesShader>("copy_samples",
-                                                                                          call_copy_samples);
-  return program;
 }
 
 }  // namespace hwsim::algos

@@ -24,7 +24,4 @@ const pipeline::FragmentProgram& deferred_light_program(GBufferEncoding encoding
 /// complex pixels redistributed over the group.
 const pipeline::ComputeProgram& tile_light_program(GBufferEncoding encoding, bool extended = false);
 
-/// Copies image 0 sample by sample.
-const pipeline::FragmentProgram& copy_samples_program();
-
 }  // namespace hwsim::algos

@@ -94,10 +94,12 @@ struct Choice {
   Choice() : id(0), count(0) {}
 };
 
-/// The primitive with the most samples left; the lowest sample breaks ties.
+/// The primitive with the most samples left; the lowest sample breaks ties. Here and below, `running` are the
+/// pixels that look for a surface.
 template <bool kMerge, class S>
-void pick_top(S& s, const SbaaAnalysisUniforms& u, const PixelSamples<S>& p, Choice<S>& best) {
-  s.loop(kScanBlock, u.samples, p.remaining, [&](int i) HWY_ATTR {
+void pick_top(S& s, const SbaaAnalysisUniforms& u, const PixelSamples<S>& p, typename S::M running,
+              Choice<S>& best) {
+  s.loop(kScanBlock, u.samples, running, [&](int i) HWY_ATTR {
     const auto n = s.load_group_byte(counter_address(s, u, p.id[i]), p.in[i]);
     const auto better = p.in[i] & (n > best.count);
     best.count = select(better, n, best.count);
@@ -107,10 +109,11 @@ void pick_top(S& s, const SbaaAnalysisUniforms& u, const PixelSamples<S>& p, Cho
 }
 
 template <class S>
-void remove_primitive(S& s, const SbaaAnalysisUniforms& u, const Choice<S>& best, PixelSamples<S>& p) {
+void remove_primitive(S& s, const SbaaAnalysisUniforms& u, const Choice<S>& best, typename S::M running,
+                      PixelSamples<S>& p) {
   using F = typename S::F;
   auto left = F(1.0f) < F(0.0f);
-  s.loop(kRemoveBlock, u.samples, p.remaining, [&](int i) HWY_ATTR {
+  s.loop(kRemoveBlock, u.samples, running, [&](int i) HWY_ATTR {
     p.in[i] = p.in[i] & (p.id[i] != best.id);
     left = left | p.in[i];
   });
@@ -119,14 +122,15 @@ void remove_primitive(S& s, const SbaaAnalysisUniforms& u, const Choice<S>& best
 
 /// Aligned samples whose depths have one mode join the primitive (docs/techniques/sbaa.md#analysis).
 template <class S>
-void remove_surface(S& s, const SbaaAnalysisUniforms& u, Choice<S>& best, PixelSamples<S>& p) {
+void remove_surface(S& s, const SbaaAnalysisUniforms& u, Choice<S>& best, typename S::M running,
+                    PixelSamples<S>& p) {
   using F = typename S::F;
   using I = typename S::I;
   using M = typename S::M;
   M aligned[pipeline::kMaxSamples];
   F nearest(1e30f), farthest(-1e30f);
   I total(0);
-  s.loop(kAlignBlock, u.samples, p.remaining, [&](int i) HWY_ATTR {
+  s.loop(kAlignBlock, u.samples, running, [&](int i) HWY_ATTR {
     aligned[i] = p.in[i] & ((p.id[i] == best.id) | (dot(best.normal, p.normal[i]) > F(u.cos_alpha)));
     nearest = select(aligned[i], min(nearest, p.z[i]), nearest);
     farthest = select(aligned[i], max(farthest, p.z[i]), farthest);
@@ -134,12 +138,12 @@ void remove_surface(S& s, const SbaaAnalysisUniforms& u, Choice<S>& best, PixelS
   });
   const F end = (farthest - nearest) * F(u.end_region);
   M one_mode = nearest >= farthest;
-  s.loop(kModeBlock, u.samples, p.remaining, [&](int i) HWY_ATTR {
+  s.loop(kModeBlock, u.samples, running, [&](int i) HWY_ATTR {
     one_mode = one_mode | (aligned[i] & (p.z[i] >= nearest + end) & (p.z[i] <= farthest - end));
   });
   s.count(SbaaCounters::merge_fallbacks_surfaces, p.remaining & !one_mode);
   auto left = F(1.0f) < F(0.0f);
-  s.loop(kRemoveBlock, u.samples, p.remaining, [&](int i) HWY_ATTR {
+  s.loop(kRemoveBlock, u.samples, running, [&](int i) HWY_ATTR {
     const M taken = aligned[i] & (one_mode | (p.id[i] == best.id));
     p.in[i] = p.in[i] & !taken;
     left = left | p.in[i];
@@ -161,7 +165,6 @@ void emit_surface(S& s, const SbaaAnalysisUniforms& u, std::size_t slot, const C
   s.store_image(0, s.pixel_x(), s.pixel_y() + I(k * to.height), I(0),
                 {to_float(best.id & I(u.id_mask)), to_float(count), F(0.0f), F(0.0f)}, s.valid());
   const auto emitted = s.valid() & (best.count > I(0));
-  s.store_buffer(0, record_index(to, s.pixel_x(), s.pixel_y(), I(k)), I(0), emitted);
   using T = SbaaCounters;
   constexpr TechniqueCounter kOfSlot[] = {T::slots_emitted_first_surfaces, T::slots_emitted_second_surfaces,
                                           T::slots_emitted_third_surfaces, T::slots_emitted_further_surfaces};
@@ -179,12 +182,15 @@ void analyze(S& s, const SbaaAnalysisUniforms& u) {
   const std::size_t slots = s.loop_count(u.surfaces.slots);
   for (std::size_t slot = 0; slot < slots; ++slot) {
     Choice<S> best;
-    s.branch(kPickBlock, p.remaining, [&]() HWY_ATTR {
-      pick_top<kMerge>(s, u, p, best);
+    // An iteration runs until samples run out (section 3.3); the first one asks nothing (Table 1: times
+    // hardly depend on what the scene covers).
+    const auto running = slot == 0 && !u.empty_exit ? s.valid() : p.remaining;
+    s.branch(kPickBlock, running, [&]() HWY_ATTR {
+      pick_top<kMerge>(s, u, p, running, best);
       if constexpr (kMerge)
-        remove_surface(s, u, best, p);
+        remove_surface(s, u, best, running, p);
       else
-        remove_primitive(s, u, best, p);
+        remove_primitive(s, u, best, running, p);
     });
     emit_surface(s, u, slot, best, background);
   }

@@ -41,10 +41,10 @@ struct SbaaAnalysisUniforms {
   float cos_alpha = 0.980785f;  ///< MERGE: samples with normals closer than this may be one surface
   float end_region = 0.25f;     ///< MERGE: share of the depth range at each end
   bool linear_depth = false;    ///< MERGE: distances instead of stored depth
+  bool empty_exit = false;      ///< pixels that nothing was drawn to look for no surface
   glm::mat4 view_from_clip{1.0f};
 };
-/// Image slots: number (with the normal if packed), normal, depth. Target: the surfaces. Buffer 0: the first
-/// word of each chosen surface's record is cleared.
+/// Image slots: number (with the normal if packed), normal, depth. Target: the surfaces.
 const pipeline::ComputeProgram& sbaa_analysis_program(SbaaSample sample, int id_bits);
 
 inline constexpr int kLeastRecordBytes = 12, kFullRecordBytes = 32, kLargestRecordBytes = 64;
