@@ -14,7 +14,7 @@ pipeline::ImageId add_axaa(pipeline::FrameGraph& graph, pipeline::ImageId input,
   u.same_sign = options.same_sign;
   u.adaptive_steps = options.adaptive_steps;
   u.metric_min = options.metric == AxaaMetric::min;
-  return add_fxaa_passes(graph, input, "axaa", u, options.fxaa.discard);
+  return add_fxaa_passes(graph, input, "axaa", u, options.fxaa.path);
 }
 
 }  // namespace

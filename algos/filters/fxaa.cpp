@@ -40,7 +40,7 @@ ImageId add_perceptual(FrameGraph& graph, const std::string& name) {
 }
 
 ImageId add_fxaa(FrameGraph& graph, ImageId input, const FxaaOptions& options) {
-  return add_fxaa_passes(graph, input, "fxaa", fxaa_uniforms(options), options.discard);
+  return add_fxaa_passes(graph, input, "fxaa", fxaa_uniforms(options), options.path);
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ FxaaUniforms fxaa_uniforms(const FxaaOptions& options) {
 }
 
 ImageId add_fxaa_passes(FrameGraph& graph, ImageId input, const std::string& name,
-                        const FxaaUniforms& uniforms, bool discard) {
+                        const FxaaUniforms& uniforms, const FxaaPath& path) {
   ImageId color = input;
   if (!uniforms.green_as_luma) {
     color = add_perceptual(graph, name + "_luma");
@@ -66,13 +66,12 @@ ImageId add_fxaa_passes(FrameGraph& graph, ImageId input, const std::string& nam
         .views = {Format::rgba8_unorm};
   }
   const ImageId output = add_perceptual(graph, name + "_output");
-  if (discard) {
+  if (path.discard) {
     Pass& copy = graph.add_pass(name + "_copy", PassKind::copy);
     copy.source = color;
     copy.targets = {output};
   }
-  add_full_screen(graph, name, {color}, output, fxaa_program(discard),
-                  std::make_shared<FxaaUniforms>(uniforms))
+  add_full_screen(graph, name, {color}, output, fxaa_program(path), std::make_shared<FxaaUniforms>(uniforms))
       .views = {Format::rgba8_unorm};
   return output;
 }
@@ -86,7 +85,10 @@ void describe(OptionList& list, FxaaOptions& o) {
   list.real("edge_threshold_min", o.edge_threshold_min, {0, 1},
             "least contrast of an edge: darkness is not filtered");
   list.choice("green_as_luma", o.green_as_luma, "off|on", "no pass that writes luma: green stands for it");
-  list.choice("discard", o.discard, "off|on",
+  list.choice(
+      "gather", o.path.gather, "off|on",
+      "lumas around the pixel by two gathers of four, as in the Direct3D 11 shader; off: by eight loads");
+  list.choice("discard", o.path.discard, "off|on",
               "edges are drawn onto a copy of the image, other pixels discarded");
 }
 

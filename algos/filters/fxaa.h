@@ -36,7 +36,7 @@ struct FxaaOptions {
   double edge_threshold = 0.166;
   double edge_threshold_min = 0.0833;
   bool green_as_luma = false;
-  bool discard = false;
+  FxaaPath path;
 };
 void describe(OptionList& list, FxaaOptions& o);
 
@@ -57,6 +57,7 @@ FxaaUniforms fxaa_uniforms(const FxaaOptions& options);
 
 /// Luma, unless green stands for it; a copy, if other pixels than edges are discarded; the filter.
 pipeline::ImageId add_fxaa_passes(pipeline::FrameGraph& graph, pipeline::ImageId input,
-                                  const std::string& name, const FxaaUniforms& uniforms, bool discard);
+                                  const std::string& name, const FxaaUniforms& uniforms,
+                                  const FxaaPath& path);
 
 }  // namespace hwsim::algos

@@ -110,13 +110,15 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(same_address_atomic_lane_ops, "of these, on the pass's most frequent address")                      \
   X(group_memory_lane_ops, "32-bit accesses to group memory")
 
-#define HWSIM_TEX_COUNTERS(X)                                                                  \
-  X(requests, "filtered texture requests, a lane each")                                        \
-  X(bilinear_probes, "bilinear probes: 1 for bilinear, 2 for trilinear, times the anisotropy") \
-  X(fetched_32bit_texels, "texels read unfiltered, up to 32 bit")                              \
-  X(fetched_64bit_texels, "texels read unfiltered, 64 bit")                                    \
-  X(fetched_128bit_texels, "texels read unfiltered, 128 bit")                                  \
-  X(texels, "texels read, by the filter and unfiltered")
+#define HWSIM_TEX_COUNTERS(X)                                                                       \
+  X(requests, "texture requests for more than a texel, a lane each: filters, gathers, comparisons") \
+  X(bilinear_probes, "bilinear probes: 1 for bilinear, 2 for trilinear, times the anisotropy")      \
+  X(gathers, "of the requests, those for one channel of 2x2 texels")                                \
+  X(comparisons, "of the requests, those for 2x2 texels compared with a depth and filtered")        \
+  X(fetched_32bit_texels, "texels read unfiltered, up to 32 bit")                                   \
+  X(fetched_64bit_texels, "texels read unfiltered, 64 bit")                                         \
+  X(fetched_128bit_texels, "texels read unfiltered, 128 bit")                                       \
+  X(texels, "texels read, filtered or not")
 
 #define HWSIM_CROP_COUNTERS(X)                                                                    \
   X(exported_fragments, "fragments written to color targets, times the number of targets")        \

@@ -72,8 +72,11 @@ void charge(const ShaderOps& ops, const BlockLanes& n, PassCounters& c) {
   s.store_lane_ops += ops.store * n.active;
   s.atomic_lane_ops += ops.atomic * n.active;
   s.group_memory_lane_ops += ops.group_memory * n.active;
-  c.tex.requests += ops.tex * n.active;
+  c.tex.requests += (ops.tex + ops.gather + ops.comparison) * n.active;
   c.tex.bilinear_probes += ops.tex * n.active;
+  c.tex.gathers += ops.gather * n.active;
+  c.tex.comparisons += ops.comparison * n.active;
+  c.tex.texels += 4 * (ops.gather + ops.comparison) * n.active;
 }
 
 }  // namespace

@@ -87,6 +87,7 @@ struct FragmentBatch {
   std::uint64_t active_lanes = 0;  ///< valid lanes that are fragments
   int sample_index = -1;           ///< sample-rate shading: the sample; -1 at pixel rate
   int layer = 0;                   ///< the layer of the attachments that is drawn to
+  float texture_footprint = 1.0f;  ///< RasterState's
 
   // One value a quad
   std::array<std::int32_t, kBatchQuads> quad_x, quad_y;  ///< top left pixel

@@ -14,10 +14,12 @@ namespace hwsim::pipeline {
 struct ShaderOps {
   std::uint32_t alu =
       0;  ///< add, multiply, fused multiply-add, compare, select, min, max, integer, conversion
-  std::uint32_t sfu = 0;     ///< reciprocal, square root, exp2, log2, sine, cosine
-  std::uint32_t interp = 0;  ///< attribute scalars
-  std::uint32_t tex = 0;     ///< filtered texture requests
-  std::uint32_t load = 0;    ///< 32-bit words loaded from buffers
+  std::uint32_t sfu = 0;         ///< reciprocal, square root, exp2, log2, sine, cosine
+  std::uint32_t interp = 0;      ///< attribute scalars
+  std::uint32_t tex = 0;         ///< filtered texture requests
+  std::uint32_t gather = 0;      ///< one channel of 2x2 texels
+  std::uint32_t comparison = 0;  ///< 2x2 texels, compared and filtered
+  std::uint32_t load = 0;        ///< 32-bit words loaded from buffers
   std::uint32_t store = 0;
   std::uint32_t atomic = 0;
   std::uint32_t group_memory = 0;

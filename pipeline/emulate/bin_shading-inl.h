@@ -305,6 +305,7 @@ class BinShading : protected BinColor {
     w_.batch.store_order += kBatchLanes;  // lanes within
     batch.store_order = w_.batch.store_order;
     batch.blocks.used = 0;
+    batch.texture_footprint = w_.state->raster.texture_footprint;
     batch.tex_bilinear_probes = 0;
     batch.image_probes = 0;
     batch.image_texels = {};

@@ -9,6 +9,7 @@
 #include "pipeline/emulate/material_views.h"
 #include "pipeline/reference/reference.h"
 #include "pipeline/shade/surface-inl.h"
+#include "pipeline/shade/texel_quad-inl.h"
 #include "pipeline/simd/scalar_lane-inl.h"
 #include "pipeline/texture/texture_sampler-inl.h"
 
@@ -78,10 +79,15 @@ class ScalarShading {
 
   bool has_shadow_map() const { return caster_.map != nullptr; }
   // The shadow map is the only image. Coordinates are clamped to it, as in a frame.
-  Vec4<F> load_image(int, I x, I y, I) const {
+  F compare_image(int, F x, F y, F reference) const {
     const Image& map = *caster_.map;
-    const glm::vec4& texel = map.at(std::clamp(x.v, 0, map.width - 1), std::clamp(y.v, 0, map.height - 1));
-    return {texel.x, texel.y, texel.z, texel.w};
+    const auto texel = [&](int at_x, int at_y) {
+      return F(map.at(std::clamp(at_x, 0, map.width - 1), std::clamp(at_y, 0, map.height - 1)).x);
+    };
+    return compare_bilinear<F, I>(x, y, reference, [&](I left, I top) {
+      return TexelQuad<F>{texel(left.v, top.v), texel(left.v + 1, top.v), texel(left.v, top.v + 1),
+                          texel(left.v + 1, top.v + 1)};
+    });
   }
 
   // A light below the surface adds nothing: no ray is shot for it.

@@ -43,6 +43,15 @@ class ComputeLanes : public LaneFlow {
   }
 
   /// As FragmentLanes'.
+  TexelQuad<F> gather_image(int slot, int channel, I x, I y, int dx = 0, int dy = 0) {
+    return read_quad(slot, channel, x + I(dx), y + I(dy));
+  }
+  F compare_image(int slot, F x, F y, F reference) {
+    return compare_bilinear<F, I>(x, y, reference,
+                                  [&](I left, I top) HWY_ATTR { return read_quad(slot, 0, left, top); });
+  }
+
+  /// As FragmentLanes'.
   template <int kChannels>
   void load_image_int(int slot, I x, I y, I sample, I (&channels)[kChannels]) {
     const GpuImage& image = *group_.resources->images[static_cast<std::size_t>(slot)];
@@ -176,6 +185,12 @@ class ComputeLanes : public LaneFlow {
   }
 
  private:
+  TexelQuad<F> read_quad(int slot, int channel, I x, I y) {
+    const GpuImage& image = *group_.resources->images[static_cast<std::size_t>(slot)];
+    const auto lanes = static_cast<std::uint64_t>(__builtin_popcount(mask_bits(live_)));
+    group_.counters->mem.texture_read_bytes += 4 * lanes * info(image.format).bytes;
+    return load_texel_quad(*group_.resources, {slot, channel, mask_bits(live_), first_}, x, y);
+  }
   int tile() const {
     HWY_ALIGN std::int32_t x[kVectorLanes], y[kVectorLanes];
     store(x_, x);

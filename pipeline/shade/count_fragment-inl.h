@@ -6,6 +6,7 @@
 #include <string>
 #include "pipeline/batch/fragment_batch.h"
 #include "pipeline/shade/count_lane.h"
+#include "pipeline/shade/texel_quad-inl.h"
 #include "pipeline/simd/vec-inl.h"
 #include "pipeline/texture/texture_sampler-inl.h"
 #if defined(HWSIM_SHADE_COUNT_FRAGMENT_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -68,6 +69,11 @@ class CountFragment {
   void store_group_byte(I address, I value, M mask) { made(OpKind::group_memory, address, value, mask); }
   void add_group_byte(I address, I value, M mask) { made(OpKind::group_memory, address, value, mask); }
   Vec4<F> sample_image(int, F x, F y) { return four(made(OpKind::texture, x, y)); }
+  TexelQuad<F> gather_image(int, int, I x, I y, int = 0, int = 0) {
+    const Vec4<F> texels = four(made(OpKind::gather, x, y));
+    return {texels.x, texels.y, texels.z, texels.w};
+  }
+  F compare_image(int, F x, F y, F reference) { return F(made(OpKind::comparison, x, y, reference)); }
   int target_width(int) const { return 1; }
   int target_height(int) const { return 1; }
   int image_width(int) const { return 1; }

@@ -2,12 +2,10 @@
 //   template <class S> static void run(S& s, const Uniforms& uniforms)
 // written once against this class and CountFragment (shade/count_fragment-inl.h). Per-target include guard.
 #include "pipeline/batch/fragment_batch.h"
-#include "pipeline/image/image.h"
 #include "pipeline/shade/buffer_access-inl.h"
+#include "pipeline/shade/image_access-inl.h"
 #include "pipeline/shade/lane_flow-inl.h"
-#include "pipeline/simd/codec-inl.h"
 #include "pipeline/simd/lanes-inl.h"
-#include "pipeline/texture/texture_sampler-inl.h"
 
 #if defined(HWSIM_SHADE_FRAGMENT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef HWSIM_SHADE_FRAGMENT_LANES_INL_H_
@@ -18,66 +16,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
-
-/// Reads texels of the pass's image slots: shared by fragment and compute contexts. Coordinates are clamped.
-HWY_INLINE LaneI texel_index(const GpuImage& image, LaneI x, LaneI y, LaneI sample) {
-  const LaneI cx = min(max(x, LaneI(0)), LaneI(image.width - 1)),
-              cy = min(max(y, LaneI(0)), LaneI(image.height - 1));
-  const LaneI block = shift_right<3>(cy) * LaneI(image.blocks_x) + shift_right<3>(cx);
-  const LaneI lane = (cx & LaneI(1)) | shift_left<1>(cy & LaneI(1)) | shift_left<1>(cx & LaneI(2)) |
-                     shift_left<2>(cy & LaneI(2)) | shift_left<2>(cx & LaneI(4)) |
-                     shift_left<3>(cy & LaneI(4));
-  return block * LaneI(static_cast<std::int32_t>(image.tile_words())) +
-         shift_left<6>(sample * LaneI(image.words)) + lane;
-}
-
-HWY_INLINE Vec4<LaneF> load_texel(const GpuImage& image, Format format, LaneI x, LaneI y, LaneI sample) {
-  const LaneI first = texel_index(image, x, y, sample);
-  LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
-  const auto* texels = reinterpret_cast<const std::int32_t*>(image.texels.data());
-  for (int word = 0; word < image.words; ++word)
-    words[word] = gather(texels, first + LaneI(word * kBlockLanes));
-  return decode_texel<LaneF, LaneI>(format, words, srgb_decode_table().data());
-}
-
-/// Notes the lines of texels of the pass's image slot, as load_texel reads them: a line is a rectangle of a
-/// tile's pixels at one sample.
-HWY_INLINE void track_texels(const ResourceView& resources, int slot, LaneI x, LaneI y, LaneI sample,
-                             std::uint32_t lanes, int first_lane) {
-  if (resources.tracker == nullptr || lanes == 0) return;
-  const GpuImage& image = *resources.images[static_cast<std::size_t>(slot)];
-  const LaneI cx = min(max(x, LaneI(0)), LaneI(image.width - 1)),
-              cy = min(max(y, LaneI(0)), LaneI(image.height - 1));
-  const LaneI block = shift_right<3>(cy) * LaneI(image.blocks_x) + shift_right<3>(cx);
-  const LaneI lane = (cx & LaneI(1)) | shift_left<1>(cy & LaneI(1)) | shift_left<1>(cx & LaneI(2)) |
-                     shift_left<2>(cy & LaneI(2)) | shift_left<2>(cx & LaneI(4)) |
-                     shift_left<3>(cy & LaneI(4));
-  const std::int32_t bytes = info(image.format).bytes;  // 64 texels of it are as many lines
-  const LaneI line =
-      LaneI(static_cast<std::int32_t>(resources.image_first_line[static_cast<std::size_t>(slot)])) +
-      (block * LaneI(image.samples * image.layers) + sample) * LaneI(bytes) +
-      shift_right<6>(lane * LaneI(bytes));
-  track_lines(*resources.tracker, line, lanes, first_lane, static_cast<std::uint32_t>(bytes));
-}
-
-/// Channel `channel` of an integer format.
-HWY_INLINE LaneI load_texel_int(const GpuImage& image, int channel, LaneI x, LaneI y, LaneI sample) {
-  return gather(reinterpret_cast<const std::int32_t*>(image.texels.data()),
-                texel_index(image, x, y, sample) + LaneI(channel * kBlockLanes));
-}
-
-/// Notes a texel stored to the pass's target: those images are numbered behind the buffers; a sample's tile
-/// is as many lines as a texel has bytes.
-inline void note_store(const ResourceView& resources, int target, int lane, std::size_t first_word) {
-  const GpuImage& image = *resources.targets[static_cast<std::size_t>(target)];
-  const auto bytes = static_cast<std::uint32_t>(info(image.format).bytes);
-  const auto texel = static_cast<std::uint32_t>(first_word % kBlockLanes);
-  const auto tile =
-      static_cast<std::uint32_t>(first_word / kBlockLanes / static_cast<std::size_t>(image.words));
-  resources.tracker->use_if_sampled(
-      lane / 4, ReuseStream::storage,
-      buffer_line(kMaxBufferSlots + target, 0) + tile * bytes + texel * bytes / kLineBytes, 0, bytes);
-}
 
 class FragmentLanes : public LaneFlow {
  public:
@@ -158,6 +96,15 @@ class FragmentLanes : public LaneFlow {
     const Vec4<F> c01 = read_texel(slot, x0, y1, I(0)), c11 = read_texel(slot, x1, y1, I(0));
     const Vec4<F> upper = c00 + (c10 - c00) * fx, lower = c01 + (c11 - c01) * fx;
     return upper + (lower - upper) * fy;
+  }
+  /// One channel of the 2x2 texels from (x + dx, y + dy) on. An instruction has room for dx and dy.
+  TexelQuad<F> gather_image(int slot, int channel, I x, I y, int dx = 0, int dy = 0) {
+    return read_quad(slot, channel, x + I(dx), y + I(dy));
+  }
+  /// A depth compared with the image's first channel (compare_bilinear).
+  F compare_image(int slot, F x, F y, F reference) {
+    return compare_bilinear<F, I>(x, y, reference,
+                                  [&](I left, I top) HWY_ATTR { return read_quad(slot, 0, left, top); });
   }
   /// As load_image, all channels of an integer format by one load.
   template <int kChannels>
@@ -257,8 +204,9 @@ class FragmentLanes : public LaneFlow {
     const TextureSampler<F, I, M, Value> sampler(*texture, batch_.resources->tracker, live_, first_);
     const F uc = interpolate(k, batch_.b1_center.data(), batch_.b2_center.data());
     const F vc = interpolate(k + 1, batch_.b1_center.data(), batch_.b2_center.data());
-    return sampler.sample(attr(k), attr(k + 1), ddx(uc), ddx(vc), ddy(uc), ddy(vc),
-                          batch_.tex_bilinear_probes);
+    const F part(batch_.texture_footprint);
+    return sampler.sample(attr(k), attr(k + 1), ddx(uc) * part, ddx(vc) * part, ddy(uc) * part,
+                          ddy(vc) * part, batch_.tex_bilinear_probes);
   }
 
   std::uint64_t live_count() const {
@@ -275,6 +223,11 @@ class FragmentLanes : public LaneFlow {
     batch_.image_read_bytes += live_count() * static_cast<std::uint64_t>(image_bytes(slot));
     track_texels(*batch_.resources, slot, x, y, sample, mask_bits(live_), first_);
     return load_texel(image, batch_.resources->formats[at], x, y, sample);
+  }
+
+  TexelQuad<F> read_quad(int slot, int channel, I x, I y) {
+    batch_.image_read_bytes += 4 * live_count() * static_cast<std::uint64_t>(image_bytes(slot));
+    return load_texel_quad(*batch_.resources, {slot, channel, mask_bits(live_), first_}, x, y);
   }
 
   F interpolate(int k, const float* b1, const float* b2) const {

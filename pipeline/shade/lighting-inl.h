@@ -102,60 +102,51 @@ Vec3<F> reflect_light(const Surface<F>& s, const Vec3<F>& l, ShadingModel model)
   }
 }
 
-/// 1/d^2 windowed to zero at the range (Karis 2013), times the spot cone; `l` receives the unit direction to
-/// the light.
+/// 1/d^2 windowed to zero at the range (Karis 2013); d: from the surface to the light, whose unit direction
+/// `l` receives.
 template <class F>
-F point_attenuation(const PointLight& light, const Vec3<F>& position, Vec3<F>& l) {
-  const Vec3<F> d = broadcast<F>(light.position) - position;
+F distance_attenuation(const Vec3<F>& d, F inv_range2, Vec3<F>& l) {
   const F d2 = max(dot(d, d), F(1e-4f));
   const F inv_d = rsqrt(d2);
   l = d * inv_d;
-  const F q = d2 * F(light.inv_range2);
+  const F q = d2 * inv_range2;
   const F window = max(F(1.0f) - q * q, F(0.0f));
-  F attenuation = window * window * inv_d * inv_d;
-  if (light.cos_outer > -1.5f) {
-    const F c = F(0.0f) - dot(l, broadcast<F>(light.axis));
-    const F cone = saturate((c - F(light.cos_outer)) * F(light.inv_cos_span));
-    attenuation = attenuation * cone * cone;
-  }
-  return attenuation;
+  return window * window * inv_d * inv_d;
+}
+/// What a spot's cone leaves of it.
+template <class F>
+F cone_attenuated(F attenuation, const Vec3<F>& l, const Vec3<F>& axis, F cos_outer, F inv_cos_span) {
+  const F c = F(0.0f) - dot(l, axis);
+  const F cone = saturate((c - cos_outer) * inv_cos_span);
+  return attenuation * cone * cone;
+}
+
+/// Distance and cone of a light that is the same for all lanes.
+template <class F>
+F point_attenuation(const PointLight& light, const Vec3<F>& position, Vec3<F>& l) {
+  const F attenuation = distance_attenuation(broadcast<F>(light.position) - position, F(light.inv_range2), l);
+  if (light.cos_outer <= -1.5f) return attenuation;
+  return cone_attenuated(attenuation, l, broadcast<F>(light.axis), F(light.cos_outer), F(light.inv_cos_span));
 }
 
 /// Block numbers of lighting within a shader's blocks (batch/program.h); materials use 1 to 5.
 enum LightingBlock : int { kShadowBlock = 6, kDirectionalBlock = 7, kPointBlock = 8, kPointInRangeBlock = 9 };
 
-/// Share of the light that reaches a point: 2x2 taps, each compared, bilinear between texels.
+/// Share of the light that reaches a point: a comparison sampler's four taps, weighed.
 template <class S, class F>
 F shadow_visibility(S& s, const LightingUniforms& u, const Vec3<F>& position, const Vec3<F>& normal) {
-  using I = typename S::I;
   const Vec3<F> p = position + normal * F(u.shadow_offset_m);
   const glm::mat4& m = u.shadow_from_world;
   const auto row = [&](int r) HWY_ATTR {
     return F(m[0][r]) * p.x + F(m[1][r]) * p.y + F(m[2][r]) * p.z + F(m[3][r]);
   };
-  const F x = row(0) - F(0.5f), y = row(1) - F(0.5f);
-  const F depth = row(2) - F(u.shadow_bias);
-  const F left = floor(x), top = floor(y);
-  const F fx = x - left, fy = y - top;
-  // Far outside the map the conversion would overflow.
-  const I xi = to_int(min(max(left, F(-1.0e6f)), F(1.0e6f))),
-          yi = to_int(min(max(top, F(-1.0e6f)), F(1.0e6f)));
-  const auto tap = [&](int dx, int dy) HWY_ATTR {
-    const F stored = s.load_image(u.shadow_slot, xi + I(dx), yi + I(dy), I(0)).x;
-    return select(depth <= stored, F(1.0f), F(0.0f));
-  };
-  // Statements: operands are evaluated in an order that compilers choose.
-  const F t10 = tap(1, 0), t00 = tap(0, 0), t11 = tap(1, 1), t01 = tap(0, 1);
-  const F upper = t00 * (F(1.0f) - fx) + t10 * fx;
-  const F lower = t01 * (F(1.0f) - fx) + t11 * fx;
-  return upper + (lower - upper) * fy;
+  return s.compare_image(u.shadow_slot, row(0), row(1), row(2) - F(u.shadow_bias));
 }
 
-/// body(unit direction to the light, its color as it arrives) for directional lights and the given point
-/// lights. `mask`: lanes that are lit at all.
+/// body(unit direction to the light, its color as it arrives) for directional lights. `mask`: lanes that are
+/// lit at all.
 template <class S, class F, class M, class Body>
-void for_each_light(S& s, const LightingUniforms& u, std::span<const PointLight> points,
-                    const Surface<F>& surface, M mask, Body&& body) {
+void for_each_directional(S& s, const LightingUniforms& u, const Surface<F>& surface, M mask, Body&& body) {
   s.loop(kDirectionalBlock, u.directional_count, mask, [&](int i) HWY_ATTR {
     const DirectionalLight& light = u.directional[static_cast<std::size_t>(i)];
     F visible(1.0f);
@@ -163,6 +154,13 @@ void for_each_light(S& s, const LightingUniforms& u, std::span<const PointLight>
                      [&]() HWY_ATTR { visible = shadow_visibility(s, u, surface.position, surface.normal); });
     body(broadcast<F>(light.to_light), broadcast<F>(light.color) * visible);
   });
+}
+
+/// The same for directional lights and the given point lights.
+template <class S, class F, class M, class Body>
+void for_each_light(S& s, const LightingUniforms& u, std::span<const PointLight> points,
+                    const Surface<F>& surface, M mask, Body&& body) {
+  for_each_directional(s, u, surface, mask, body);
   s.loop(kPointBlock, static_cast<int>(points.size()), mask, [&](int i) HWY_ATTR {
     const PointLight& light = points[static_cast<std::size_t>(i)];
     Vec3<F> l;

@@ -23,6 +23,12 @@ void charge(OpKind kind, ShaderOps& ops) {
     case OpKind::texture:
       ops.tex += 1;
       return;
+    case OpKind::gather:
+      ops.gather += 1;
+      return;
+    case OpKind::comparison:
+      ops.comparison += 1;
+      return;
     case OpKind::fetch:  // charged by texels, where they are read
       return;
     case OpKind::load:
@@ -47,13 +53,15 @@ void charge(OpKind kind, ShaderOps& ops) {
 ShaderOps dearest(const ShaderOps& a, const ShaderOps& b) {
   ShaderOps ops;
   for (const auto count : {&ShaderOps::alu, &ShaderOps::sfu, &ShaderOps::interp, &ShaderOps::tex,
-                           &ShaderOps::load, &ShaderOps::store, &ShaderOps::atomic, &ShaderOps::group_memory})
+                           &ShaderOps::gather, &ShaderOps::comparison, &ShaderOps::load, &ShaderOps::store,
+                           &ShaderOps::atomic, &ShaderOps::group_memory})
     ops.*count = std::max(a.*count, b.*count);
   return ops;
 }
 
 bool waits_for_memory(OpKind kind) {
-  return kind == OpKind::texture || kind == OpKind::fetch || kind == OpKind::load || kind == OpKind::atomic;
+  return kind == OpKind::texture || kind == OpKind::gather || kind == OpKind::comparison ||
+         kind == OpKind::fetch || kind == OpKind::load || kind == OpKind::atomic;
 }
 bool runs_on_lanes(OpKind kind) {
   // Group memory answers within a few instructions.

@@ -19,7 +19,9 @@ enum class OpKind : std::uint8_t {
   sfu,
   interp,
   texture,
-  fetch,  ///< a texel, unfiltered
+  gather,      ///< one channel of 2x2 texels
+  comparison,  ///< 2x2 texels, compared with a depth and filtered
+  fetch,       ///< a texel, unfiltered
   load,
   store,
   atomic,

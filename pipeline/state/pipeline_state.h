@@ -88,6 +88,9 @@ struct RasterState {
   bool centroid = false;      ///< attributes of partly covered pixels are taken inside the triangle
   bool sample_rate = false;   ///< the shader runs once for each covered sample
   std::vector<SamplePosition> sample_positions;  ///< empty: the standard pattern of the sample count
+  /// The part of a pixel that textures are filtered for: less where several shadings share a pixel, as a
+  /// sampler's bias of log2(this).
+  float texture_footprint = 1.0f;
 };
 
 /// How a fragment's coverage reaches its shader and leaves it (docs/techniques/conventions.md#coverage,

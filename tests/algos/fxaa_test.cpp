@@ -135,6 +135,26 @@ TEST(Fxaa, DiscardChangesTheWorkAndNotTheImage) {
             total(whole.trace.passes.back()).crop.written_samples / 2);
 }
 
+// Direct3D 11's path: two gathers and the color's load, then two loads at edges; else five loads and four.
+TEST(Fxaa, GathersAreFewerRequestsForTheSameImage) {
+  const Picture p = shapes(192, 120);
+  constexpr std::uint64_t kPixels = 192 * 120;
+  for (const std::string name : {"fxaa", "axaa", "fxaa:green_as_luma=on", "fxaa:discard=on"}) {
+    const std::string with = name + (name.find(':') == std::string::npos ? ":" : ",");
+    const Filtered gathers = filter(p, with + "gather=on"), loads = filter(p, with + "gather=off");
+    EXPECT_EQ(gathers.picture, loads.picture) << name;
+    EXPECT_EQ(filter(p, name).trace.passes.back().chunks.size(), gathers.trace.passes.back().chunks.size());
+    const PassCounters g = total(gathers.trace.passes.back()), l = total(loads.trace.passes.back());
+    EXPECT_EQ(g.tex.gathers, 2 * kPixels) << name;
+    EXPECT_EQ(l.tex.gathers, 0u) << name;
+    EXPECT_EQ(g.tex.bilinear_probes, l.tex.bilinear_probes) << name << ": the search is the same";
+    const std::uint64_t center = name == "fxaa:discard=on" ? 0 : kPixels;
+    const std::uint64_t edge_loads = g.tex.fetched_32bit_texels - center;
+    EXPECT_GT(edge_loads, kPixels / 50) << name;
+    EXPECT_EQ(l.tex.fetched_32bit_texels, 5 * kPixels + 2 * edge_loads) << name;
+  }
+}
+
 TEST(Fxaa, TransposedPicturesGiveTransposedResults) {
   const Picture p = shapes(120, 120);
   const Picture once = filter(p, "fxaa").picture, twice = transposed(filter(transposed(p), "fxaa").picture);

@@ -189,10 +189,10 @@ TEST(Options, NamesOfOtherTechniquesMeanTheirFields) {
         {FIELD("preset", o.fxaa.preset), FIELD("subpix", o.fxaa.subpix),
          FIELD("edge_threshold", o.fxaa.edge_threshold),
          FIELD("edge_threshold_min", o.fxaa.edge_threshold_min), FIELD("green_as_luma", o.fxaa.green_as_luma),
-         FIELD("discard", o.fxaa.discard), FIELD("skip_filtered", o.skip_filtered), FIELD("alpha", o.alpha),
-         FIELD("alpha_mode", o.alpha_mode), FIELD("keep_thin_lines", o.keep_thin_lines),
-         FIELD("same_sign", o.same_sign), FIELD("adaptive_steps", o.adaptive_steps),
-         FIELD("axaa_metric", o.metric)});
+         FIELD("gather", o.fxaa.path.gather), FIELD("discard", o.fxaa.path.discard),
+         FIELD("skip_filtered", o.skip_filtered), FIELD("alpha", o.alpha), FIELD("alpha_mode", o.alpha_mode),
+         FIELD("keep_thin_lines", o.keep_thin_lines), FIELD("same_sign", o.same_sign),
+         FIELD("adaptive_steps", o.adaptive_steps), FIELD("axaa_metric", o.metric)});
   }
   {
     using Struct = CsaaOptions;

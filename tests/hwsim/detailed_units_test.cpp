@@ -60,6 +60,8 @@ const std::vector<UnitCase>& unit_cases() {
        shading([](P& c) { c.shader.atomic_lane_ops = c.shader.same_address_atomic_lane_ops = 16'000; }),
        16'000.0},
       {"tex, probes", kScreen, shading([](P& c) { c.tex.bilinear_probes = 800'000; }), 800'000 / 40.0},
+      {"tex, gathers", kScreen, shading([](P& c) { c.tex.gathers = 640'000; }), 640'000 / 0.8 / 40.0},
+      {"tex, comparisons", kScreen, shading([](P& c) { c.tex.comparisons = 400'000; }), 400'000 * 2 / 40.0},
       {"tex, 64-bit texels", kScreen, shading([](P& c) { c.tex.fetched_64bit_texels = 400'000; }),
        400'000 * 2 / 40.0},
       {"tex, 128-bit texels", kScreen, shading([](P& c) { c.tex.fetched_128bit_texels = 200'000; }),

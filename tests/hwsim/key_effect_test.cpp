@@ -89,6 +89,8 @@ std::vector<PassWork> single_path_passes() {
       pass_of([](PassCounters& c) { c.shader.atomic_lane_ops = 999; }),
       pass_of([](PassCounters& c) { c.gs.output_bytes = 9999; }),
       pass_of([](PassCounters& c) { c.tex.bilinear_probes = 999; }),
+      pass_of([](PassCounters& c) { c.tex.gathers = 999; }),
+      pass_of([](PassCounters& c) { c.tex.comparisons = 999; }),
       pass_of([](PassCounters& c) { c.tex.fetched_64bit_texels = 999; }),
       pass_of([](PassCounters& c) { c.tex.fetched_128bit_texels = 999; }),
       pass_of([](PassCounters& c) { c.shader.same_address_atomic_lane_ops = 999; }),

@@ -122,5 +122,15 @@ TEST(Texture, UnfilteredTexelsCostTheRatioOfTheirSize) {
                    (4000.0 + 400 + 200 * 2 + 100 * 4) / 40);
 }
 
+TEST(Texture, AGatherAndAComparisonTakeOneSlotAtTheirRates) {
+  GpuConfig gpu = sample_gpu();
+  PassCounters c;
+  c.tex.requests = 1200;
+  c.tex.gathers = 800;
+  c.tex.comparisons = 400;
+  const FrameTiming t = time_one(repeated(PassKind::full_screen, c, 1), gpu);
+  EXPECT_DOUBLE_EQ(t.passes[0].busy_ns[static_cast<std::size_t>(Unit::tex)], (800 / 0.8 + 400 / 0.5) / 40);
+}
+
 }  // namespace
 }  // namespace hwsim::test

@@ -22,6 +22,8 @@ inline GpuConfig sample_gpu() {
   c.tex_bilinear_per_clk = 40;
   c.tex_64bit_ratio = 0.5;
   c.tex_128bit_ratio = 0.25;
+  c.tex_gather_ratio = 0.8;
+  c.tex_comparison_ratio = 0.5;
   c.setup_drawn_triangles_per_clk = 2.0;
   c.setup_culled_triangles_per_clk = 3.5;
   c.raster_engines = 4;

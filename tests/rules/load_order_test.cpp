@@ -80,10 +80,10 @@ std::vector<std::string> ordered_parts(const std::string& code) {
 }
 
 std::vector<std::string> unordered_accesses(const std::string& text) {
-  std::set<std::string> names = {"load_image",        "load_image_int", "load_buffer",
-                                 "sample_image",      "sample_texture", "sample_texture_alpha",
-                                 "sample_texture_at", "atomic_add",     "read_texel",
-                                 "atomic_exchange",   "load_group_byte"};
+  std::set<std::string> names = {
+      "load_image",           "load_image_int",    "load_buffer",  "sample_image", "sample_texture",
+      "sample_texture_alpha", "sample_texture_at", "atomic_add",   "read_texel",   "atomic_exchange",
+      "load_group_byte",      "gather_image",      "compare_image"};
   const std::string code = code_of(text);
   add_callers(code, names);
   std::vector<std::string> found;

@@ -22,7 +22,8 @@ enum FxaaBlock : int {
 
 /// One pixel's filter. Names follow docs/techniques/filters.md#fxaa: m is the pixel, n, s, w, e its
 /// neighbors.
-template <class S>
+/// kGather: FXAA's own Direct3D 11 path, FXAA_GATHER4_ALPHA: seven of the nine lumas by two requests.
+template <class S, bool kGather, bool kDiscard>
 class Fxaa {
  public:
   using F = typename S::F;
@@ -31,13 +32,27 @@ class Fxaa {
   using Color = lanes::Vec4<F>;
 
   Fxaa(S& s, const FxaaUniforms& u) : s_(s), u_(u), x_(s.pixel_x()), y_(s.pixel_y()) {
-    const Color center = s_.load_image(0, x_, y_, I(0));
+    Color center;
+    if constexpr (kGather) {
+      const lanes::TexelQuad<F> below = lumas_at(0, 0), above = lumas_at(-1, -1);
+      m_ = below.t00;
+      e_ = below.t10;
+      s_luma_ = below.t01;
+      se_ = below.t11;
+      nw_ = above.t00;
+      n_ = above.t10;
+      w_ = above.t01;
+      center = {m_, m_, m_, m_};  // a discarded pixel needs no color
+      if constexpr (!kDiscard) center = s_.load_image(0, x_, y_, I(0));
+    } else {
+      center = s_.load_image(0, x_, y_, I(0));
+      m_ = luma(center);
+      n_ = luma_at(0, -1);
+      s_luma_ = luma_at(0, 1);
+      w_ = luma_at(-1, 0);
+      e_ = luma_at(1, 0);
+    }
     color = center;
-    m_ = luma(center);
-    n_ = luma_at(0, -1);
-    s_luma_ = luma_at(0, 1);
-    w_ = luma_at(-1, 0);
-    e_ = luma_at(1, 0);
     max_ = max(max(max(n_, s_luma_), max(w_, e_)), m_);
     min_ = min(min(min(n_, s_luma_), min(w_, e_)), m_);
     range_ = max_ - min_;
@@ -52,6 +67,9 @@ class Fxaa {
  private:
   F luma(const Color& c) const { return u_.green_as_luma ? c.y : c.w; }
   F luma_at(int dx, int dy) { return luma(s_.load_image(0, x_ + I(dx), y_ + I(dy), I(0))); }
+  lanes::TexelQuad<F> lumas_at(int dx, int dy) {
+    return s_.gather_image(0, u_.green_as_luma ? 1 : 3, x_, y_, dx, dy);
+  }
 
   /// AXAA rule 1.
   M is_filtered() const {
@@ -65,7 +83,10 @@ class Fxaa {
   }
 
   Color filtered() {
-    const F nw = luma_at(-1, -1), ne = luma_at(1, -1), sw = luma_at(-1, 1), se = luma_at(1, 1);
+    if constexpr (!kGather) nw_ = luma_at(-1, -1);
+    const F nw = nw_, ne = luma_at(1, -1), sw = luma_at(-1, 1);
+    if constexpr (!kGather) se_ = luma_at(1, 1);
+    const F se = se_;
     const F two(2.0f);
     const F across_rows =
         abs(nw + sw - two * w_) + two * abs(n_ + s_luma_ - two * m_) + abs(ne + se - two * e_);
@@ -155,18 +176,18 @@ class Fxaa {
   S& s_;
   const FxaaUniforms& u_;
   I x_, y_;
-  F m_, n_, s_luma_, w_, e_;
+  F m_, n_, s_luma_, w_, e_, nw_, se_;
   F max_, min_, range_;
   M horizontal_;
   F sign_, average_, gradient_;  ///< the edge's side, mean luma, and a quarter of the gradient across it
 };
 
-template <bool kDiscard>
+template <bool kGather, bool kDiscard>
 struct FxaaShader {
   using Uniforms = FxaaUniforms;
   template <class S>
   static void run(S& s, const FxaaUniforms& u) {
-    const Fxaa<S> fxaa(s, u);
+    const Fxaa<S, kGather, kDiscard> fxaa(s, u);
     if constexpr (kDiscard) s.discard(!fxaa.edge);
     s.output(0, {fxaa.color.x, fxaa.color.y, fxaa.color.z, typename S::F(1.0f)});
   }
@@ -181,12 +202,14 @@ struct LumaShader {
   }
 };
 
+template <bool kGather, bool kDiscard>
 void run_fxaa(pipeline::FragmentBatch& b, const void* u) {
-  lanes::run_fragment_shader<FxaaShader<false>>(b, u);
+  lanes::run_fragment_shader<FxaaShader<kGather, kDiscard>>(b, u);
 }
-void run_fxaa_discard(pipeline::FragmentBatch& b, const void* u) {
-  lanes::run_fragment_shader<FxaaShader<true>>(b, u);
-}
+void run_loads(pipeline::FragmentBatch& b, const void* u) { run_fxaa<false, false>(b, u); }
+void run_loads_discard(pipeline::FragmentBatch& b, const void* u) { run_fxaa<false, true>(b, u); }
+void run_gathers(pipeline::FragmentBatch& b, const void* u) { run_fxaa<true, false>(b, u); }
+void run_gathers_discard(pipeline::FragmentBatch& b, const void* u) { run_fxaa<true, true>(b, u); }
 void run_luma(pipeline::FragmentBatch& b, const void* u) { lanes::run_fragment_shader<LumaShader>(b, u); }
 
 }  // namespace hwsim::algos::HWY_NAMESPACE
@@ -194,22 +217,32 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace hwsim::algos {
-HWY_EXPORT(run_fxaa);
-HWY_EXPORT(run_fxaa_discard);
+HWY_EXPORT(run_loads);
+HWY_EXPORT(run_loads_discard);
+HWY_EXPORT(run_gathers);
+HWY_EXPORT(run_gathers_discard);
 HWY_EXPORT(run_luma);
 
-const pipeline::FragmentProgram& fxaa_program(bool discard) {
+const pipeline::FragmentProgram& fxaa_program(const FxaaPath& path) {
+  using HWY_NAMESPACE::FxaaShader;
+  using pipeline::FragmentBatch;
   using pipeline::HWY_NAMESPACE::describe_fragment_shader;
-  static const pipeline::FragmentProgram whole = describe_fragment_shader<HWY_NAMESPACE::FxaaShader<false>>(
-      "fxaa", [](pipeline::FragmentBatch& b, const void* u) {
-        HWY_DYNAMIC_DISPATCH(run_fxaa)
-        (b, u);
-      });
-  static const pipeline::FragmentProgram edges = describe_fragment_shader<HWY_NAMESPACE::FxaaShader<true>>(
-      "fxaa_discard", [](pipeline::FragmentBatch& b, const void* u) {
-        HWY_DYNAMIC_DISPATCH(run_fxaa_discard)(b, u);
-      });
-  return discard ? edges : whole;
+  static const pipeline::FragmentProgram loads[] = {
+      describe_fragment_shader<FxaaShader<false, false>>(
+          "fxaa", [](FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_loads)
+                                                        (b, u); }),
+      describe_fragment_shader<FxaaShader<false, true>>("fxaa_discard", [](FragmentBatch& b, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_loads_discard)(b, u);
+      })};
+  static const pipeline::FragmentProgram gathers[] = {
+      describe_fragment_shader<FxaaShader<true, false>>(
+          "fxaa_gather", [](FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_gathers)
+                                                               (b, u); }),
+      describe_fragment_shader<FxaaShader<true, true>>("fxaa_gather_discard",
+                                                       [](FragmentBatch& b, const void* u) {
+                                                         HWY_DYNAMIC_DISPATCH(run_gathers_discard)(b, u);
+                                                       })};
+  return (path.gather ? gathers : loads)[path.discard ? 1 : 0];
 }
 
 const pipeline::FragmentProgram& luma_program() {

@@ -26,8 +26,13 @@ struct FxaaUniforms {
   float alpha = 0.1f;
 };
 
-/// Image slot 0: perceptual color. With `discard`, pixels that stay as they are are not written.
-const pipeline::FragmentProgram& fxaa_program(bool discard);
+/// How the shader reads and writes its pixel.
+struct FxaaPath {
+  bool gather = true;    ///< lumas around the pixel by two gathers, as its Direct3D 11 path; else by loads
+  bool discard = false;  ///< pixels that stay as they are are not written
+};
+/// Image slot 0: perceptual color.
+const pipeline::FragmentProgram& fxaa_program(const FxaaPath& path);
 
 struct NoUniforms {};
 /// Image slot 0 with its luma in alpha, as a tone-mapping pass would leave it.

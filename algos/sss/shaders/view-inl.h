@@ -307,7 +307,7 @@ class SurfacePoint {
     site.v = attr(k + 1);
     return s_.sample_texture_at(texture, site);
   }
-  Vec4<F> load_image(int slot, I x, I y, I sample) { return s_.load_image(slot, x, y, sample); }
+  F compare_image(int slot, F x, F y, F reference) { return s_.compare_image(slot, x, y, reference); }
   template <class Body>
   void branch(int block, M mask, Body&& body) {
     s_.branch(block, mask, body);
