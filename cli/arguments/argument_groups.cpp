@@ -103,6 +103,10 @@ void add_view_flags(CLI::App& app, ViewArguments& view) {
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
   app.add_flag("--no-shadows", view.no_shadows, "No shadow map");
+  app.add_option("--anisotropy", view.anisotropy,
+                 "Probes of a texture request at most, along the longer axis of its footprint; default 1")
+      ->check(CLI::Range(1, 16))
+      ->type_name("N");
   app.add_option("--exposure", view.exposure,
                  "Factor of the file's lights; default 1, or less where they are in photometric units")
       ->check(CLI::Range(1e-12, 1e12))

@@ -36,6 +36,7 @@ struct ViewArguments {
   std::optional<Resolution> resolution;
   std::optional<std::string> camera;  ///< a name or an index
   std::optional<int> point_lights;
+  std::optional<int> anisotropy;
   std::optional<double> exposure;
   std::optional<std::string> reference_shadows;
   bool no_shadows = false;

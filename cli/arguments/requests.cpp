@@ -22,6 +22,7 @@ void apply_flags(const ViewArguments& options, View& view) {
   view.camera = options.camera.value_or(view.camera);
   view.point_lights = options.point_lights.value_or(view.point_lights);
   view.shadows = view.shadows && !options.no_shadows;
+  view.anisotropy = options.anisotropy.value_or(view.anisotropy);
   view.exposure = options.exposure.value_or(view.exposure);
   view.reference_shadows = options.reference_shadows.value_or(view.reference_shadows);
 }
@@ -47,7 +48,8 @@ void check_image_flags(const RunArguments& options, const View& view, std::vecto
   };
   refuse(options.view.resolution.has_value(), "--resolution");
   refuse(options.view.camera.has_value(), "--camera");
-  refuse(options.view.point_lights.has_value(), "--point-lights");
+  refuse(options.view.point_lights.has_value(), "--lights");
+  refuse(options.view.anisotropy.has_value(), "--anisotropy");
 }
 
 Request request_with(const RunArguments& options, std::vector<Diagnostic>& problems) {

@@ -37,6 +37,7 @@ struct View {
   bool shadows = true;
   int shadow_map_px = 2048;
   bool metal_ambient = true;
+  int anisotropy = 1;
   std::string reference_shadows = "map";
   double exposure = 0.0;  ///< factor on the file's lights; 0: automatic (pipeline::SceneLoadOptions)
   int memory_mib = 2048;  ///< that loading the scene may take
@@ -90,7 +91,7 @@ struct Field {
 template <class Visitor>
 void describe(Visitor& v, View& view) {
   auto& [scene, resolution, camera, point_lights, light_range, lights, shadows, shadow_map_px, metal_ambient,
-         reference_shadows, exposure, memory_mib] = view;
+         anisotropy, reference_shadows, exposure, memory_mib] = view;
   auto& [width_px, height_px] = resolution;
   // The scene's content and the camera's index stand in the keys of caches, not what the user called them.
   v.field(
@@ -135,6 +136,14 @@ void describe(Visitor& v, View& view) {
            "metal_ambient",
            kWork | kReference},
           metal_ambient);
+  v.field(
+      {{"anisotropy", 1, 16, kNoFlags,
+        "probes of a texture request at most, along the longer axis of a pixel's footprint; 1: none beyond "
+        "the filter's own"},
+       "scene",
+       "anisotropy",
+       kWork | kReference},
+      anisotropy);
   v.field(
       {{"reference_shadows", 0, 0, kNoFlags,
         "the reference's shadows: map, the frame's own shadow map, or rays, which show what the map costs"},

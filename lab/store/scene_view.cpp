@@ -142,6 +142,7 @@ pipeline::SceneLoadOptions load_options(const View& view) {
   pipeline::SceneLoadOptions options;
   options.max_memory_bytes = static_cast<std::uint64_t>(view.memory_mib) << 20;
   options.exposure = view.exposure;
+  options.max_anisotropy = view.anisotropy;
   return options;
 }
 
@@ -224,10 +225,10 @@ const std::shared_ptr<const pipeline::Scene>& SceneView::scene() {
 algos::FrameRequest SceneView::frame_request() {
   // All members by name, as in `describe`: a new one that is forgotten here does not compile.
   const auto& [scene_name, resolution, camera, point_lights, light_range, lights, shadows, shadow_map_px,
-               metal_ambient, reference_shadows, exposure, memory_mib] = plan_;
-  static_cast<void>(scene_name), static_cast<void>(camera);  // scene(), camera_
-  static_cast<void>(reference_shadows), static_cast<void>(exposure),
-      static_cast<void>(memory_mib);  // elsewhere
+               metal_ambient, anisotropy, reference_shadows, exposure, memory_mib] = plan_;
+  static_cast<void>(scene_name), static_cast<void>(camera);             // scene(), camera_
+  static_cast<void>(anisotropy), static_cast<void>(exposure);           // load_options()
+  static_cast<void>(memory_mib), static_cast<void>(reference_shadows);  // likewise, and elsewhere
   algos::FrameRequest request;
   request.scene = scene();
   request.width_px = resolution.width_px;

@@ -247,6 +247,8 @@ Scene load(Report& report, ReadContainer&& container, const SceneLoadOptions& op
   scene.name = std::filesystem::path(report.file()).stem().string();
   gltf::MaterialSet set = gltf::build_materials(report, source, materials_in_use(model, used_meshes));
   scene.samplers = std::move(set.samplers);
+  for (Sampler& sampler : scene.samplers)
+    if (sampler.min == Filter::linear) sampler.max_anisotropy = std::clamp(options.max_anisotropy, 1, 16);
   gltf::charge_textures(report, budget, source, set.textures);
   // Beside the meshes: loading the image library alone takes 0.2 s.
   std::future<std::vector<Texture>> textures =

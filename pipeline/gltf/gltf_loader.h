@@ -17,6 +17,9 @@ struct SceneLoadOptions {
   /// What the lights are multiplied by; 0: 1, or so much less that lights in photometric units (a sun of
   /// 100,000 lux) light white to about 1. Any other value becomes part of Scene::content_hash.
   double exposure = 0.0;
+  /// Probes of a texture request at most, 1 to 16, along the longer axis of a pixel's footprint: of samplers
+  /// that filter linearly. glTF has no word for it. No part of Scene::content_hash.
+  int max_anisotropy = 1;
 };
 
 /// Reads a .gltf or .glb file. Throws InputError (codes S0xx) naming the file, the element

@@ -52,6 +52,8 @@ const Mistake kMistakes[] = {
     {"ResolutionOverflow", "run triangle.gltf --resolution 99999999999999999999x1", 2, "U005",
      "WIDTHxHEIGHT"},
     {"BadLights", "run triangle.gltf --lights 5000", 2, "U003", "--lights"},
+    {"BadAnisotropy", "run triangle.gltf --anisotropy 17", 2, "U003", "--anisotropy"},
+    {"BadAnisotropySet", "run triangle.gltf --set scene.anisotropy=0", 3, "C014", "between 1.0 and 16.0"},
     {"BadSamples", "run triangle.gltf --reference 0", 2, "U003", "--reference"},
     {"ListNothing", "list gpu", 2, "U003", "did you mean `gpus`"},
     {"HelpOnNothing", "help Z999", 2, "U014", "Z999"},
