@@ -229,6 +229,9 @@ PipelineState opaque_state(const ForwardTarget& target) {
   state.raster.centroid = target.centroid;
   state.raster.sample_rate = target.sample_rate;
   state.raster.sample_positions = target.layers.positions;
+  // Each layer shades its pixel: textures filtered for a whole one would blur, and more layers look worse.
+  const auto layers = static_cast<float>(std::max<std::size_t>(1, target.layers.viewports.size()));
+  state.raster.texture_footprint = 1.0f / std::sqrt(layers);
   return state;
 }
 

@@ -84,18 +84,20 @@ std::vector<SamplePosition> coverage_positions(int samples, int positions) {
   return all;
 }
 
+// Layers shade at their pixels' centers, so a layer's samples lie around it: squeezed into one half, all layers
+// shaded up to half a pixel right of and below what they sampled, and textures moved by a quarter of a pixel.
 MulticastPattern multicast_pattern(int samples) {
   MulticastPattern pattern;
   for (const P p : k8) {
-    const auto squeezed = [](int v) { return static_cast<std::int8_t>((v + 7) / 2 - 8); };
+    const auto squeezed = [](int v) { return static_cast<std::int8_t>((v + 7) / 2 - 4); };
     pattern.positions.push_back({squeezed(p.x), samples == 32 ? squeezed(p.y) : p.y});
   }
   switch (samples) {
-    case 16:  // the left half; the second layer reaches the right one, a sixteenth higher: 16 rooks
-      pattern.viewports = {{0, 0}, {-128, 16}};
+    case 16:  // the left half, and the right one a sixteenth higher: 16 rooks
+      pattern.viewports = {{64, 0}, {-64, 16}};
       return pattern;
     case 32:
-      pattern.viewports = {{0, 0}, {-128, 0}, {0, -128}, {-128, -128}};
+      pattern.viewports = {{64, 64}, {-64, 64}, {64, -64}, {-64, -64}};
       return pattern;
     default:
       throw std::invalid_argument("no multicast pattern of " + std::to_string(samples) + " samples");

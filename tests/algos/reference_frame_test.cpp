@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "algos/techniques.h"
+#include "hwsim/gpu/every_feature.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/image/metrics.h"
 #include "pipeline/open/scene_source.h"
@@ -51,6 +52,23 @@ TEST(ReferenceFrame, LooksUpTheFramesShadowMapUnlessRaysAreAskedFor) {
   finer.shadow_map_px = 4096;
   EXPECT_GT(pipeline::compare(render_reference_frame(finer, {.samples = 64}), by_rays).psnr_db,
             pipeline::compare(by_map, by_rays).psnr_db + 3.0);
+}
+
+// Layers that shaded beside what they sampled, and filtered textures for whole pixels, did.
+TEST(ReferenceFrame, MoreSamplesInLayersDoNotLookWorse) {
+  FrameRequest request = hall_request();
+  request.features = every_feature(8);
+  const pipeline::Image reference = render_reference_frame(request, {.samples = 64});
+  const auto error = [&](const std::string& technique) {
+    const pipeline::FrameGraph graph = build_frame(parse_technique(technique), request);
+    return pipeline::compare(pipeline::emulate(graph, request.features, request.functional, {}).color,
+                             reference);
+  };
+  const pipeline::ImageError eight = error("msaa8x"), sixteen = error("msaa16x"),
+                             thirty_two = error("msaa32x");
+  EXPECT_GT(sixteen.psnr_db, eight.psnr_db);
+  EXPECT_GT(thirty_two.psnr_db, sixteen.psnr_db);
+  EXPECT_LT(thirty_two.flip_mean, eight.flip_mean);
 }
 
 TEST(ReferenceFrame, ShadowsAndPointLightsAreThoseOfTheRequest) {

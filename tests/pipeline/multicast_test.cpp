@@ -139,6 +139,20 @@ TEST(Multicast, PatternsFillThePixelEvenly) {
   }
 }
 
+// A layer shades at its pixel's center. With samples beside it, textures and shadows would move against edges.
+TEST(Multicast, LayersShadeInTheMiddleOfWhatTheySample) {
+  for (const int samples : {16, 32}) {
+    const MulticastPattern pattern = multicast_pattern(samples);
+    glm::ivec2 sum(0), shifts(0);
+    for (const SamplePosition p : pattern.positions) sum += glm::ivec2(p.x, p.y);
+    for (const ViewportShift shift : pattern.viewports) shifts += glm::ivec2(shift.x, shift.y);
+    EXPECT_LE(std::abs(sum.x), 8) << samples;  // half a sixteenth of a pixel each: positions are whole
+    EXPECT_LE(std::abs(sum.y), 8) << samples;
+    EXPECT_LE(std::abs(shifts.x), 16) << samples;
+    EXPECT_LE(std::abs(shifts.y), 16) << samples;
+  }
+}
+
 // Alpha keeps the same samples, whether they lie in layers or not.
 TEST(Multicast, AlphaToCoverageCountsTheSamplesOfAllLayers) {
   const MulticastPattern pattern = multicast_pattern(32);
