@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "algos/base/prepass.h"
 #include "algos/base/shaders/post.h"
 #include "pipeline/emulate/material_views.h"
 #include "pipeline/scene/shadow_view.h"
@@ -302,9 +303,14 @@ void add_forward(FrameGraph& graph, const FrameParts& parts, const std::string& 
                  const ForwardTarget& target) {
   graph.add_clear(prefix + "clear", {target.color, target.depth},
                   glm::vec4(parts.request->scene->background, 1.0f));
+  if (target.prepass) add_prepass(graph, parts, prefix, target);
   Pass& pass = add_target_pass(graph, parts, prefix + "forward", target);
   pass.batches.push_back(surface_batch(parts, target, parts.draws.opaque, false));
-  if (!parts.draws.mask.empty()) pass.batches.push_back(surface_batch(parts, target, parts.draws.mask, true));
+  // After a pre-pass that dropped what is below the cutoff, equal depth is the alpha test.
+  if (!parts.draws.mask.empty())
+    pass.batches.push_back(surface_batch(parts, target, parts.draws.mask, !target.prepass));
+  if (target.prepass)
+    for (DrawBatch& batch : pass.batches) draw_where_equal(batch.state);
   add_blended(graph, parts, prefix, target);
 }
 

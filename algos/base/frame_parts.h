@@ -52,6 +52,7 @@ struct ForwardTarget {
   bool centroid = false, sample_rate = false;
   int coverage_samples = 0;   ///< more than `samples`: with a coverage map (docs/techniques/forward.md)
   bool drop_orphans = false;  ///< see Pass::drop_orphans
+  bool prepass = false;       ///< depth is drawn first, and what is equal shaded (prepass.h)
   glm::vec2 jitter_px{0.0f};  ///< samples move by this (x right, y down), so geometry moves against it
   /// The layers of a multicast target; no viewports: one layer, standard positions.
   pipeline::MulticastPattern layers;

@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "algos/base/frame_parts.h"
+#include "algos/base/prepass.h"
 #include "algos/base/shaders/post.h"
+#include "algos/forward/forward_plus.h"
 #include "algos/forward/options.h"
 #include "pipeline/state/sample_pattern.h"
 
@@ -42,10 +44,12 @@ void build_accumulated(FrameGraph& graph, const FrameParts& parts, int factor) {
                   std::make_shared<ScaleUniforms>(ScaleUniforms{1.0f / (k * k)}));
 }
 
-void build_multisampled(FrameGraph& graph, const FrameParts& parts, int samples, bool centroid,
+void build_multisampled(FrameGraph& graph, const FrameParts& parts, const MsaaOptions& options,
                         bool sample_rate) {
-  ForwardTarget target = make_forward_target(graph, "multisampled", graph.width(), graph.height(), samples);
-  target.centroid = centroid;
+  ForwardTarget target =
+      make_forward_target(graph, "multisampled", graph.width(), graph.height(), options.samples);
+  target.centroid = options.centroid;
+  target.prepass = options.prepass;
   target.sample_rate = sample_rate;
   add_forward(graph, parts, "", target);
   graph.add_resolve("resolve", target.color, add_output(graph));
@@ -53,14 +57,16 @@ void build_multisampled(FrameGraph& graph, const FrameParts& parts, int samples,
 
 // Layers of eight samples under shifted viewports (docs/techniques/forward.md#multicast); no resolve mixes
 // layers, so a shader does.
-void build_multicast(FrameGraph& graph, const FrameParts& parts, int samples, bool centroid,
+void build_multicast(FrameGraph& graph, const FrameParts& parts, const MsaaOptions& options,
                      const MulticastPattern& layers) {
-  ForwardTarget target = make_forward_target(graph, "multisampled", graph.width(), graph.height(), samples,
-                                             Format::rgba8_srgb, Format::d24_unorm_s8, layers);
-  target.centroid = centroid;
+  ForwardTarget target =
+      make_forward_target(graph, "multisampled", graph.width(), graph.height(), options.samples,
+                          Format::rgba8_srgb, Format::d24_unorm_s8, layers);
+  target.centroid = options.centroid;
+  target.prepass = options.prepass;
   add_forward(graph, parts, "", target);
   add_full_screen(graph, "merge", {target.color}, add_output(graph), merge_program(),
-                  std::make_shared<MergeUniforms>(MergeUniforms{samples}));
+                  std::make_shared<MergeUniforms>(MergeUniforms{options.samples}));
 }
 
 /// Samples and positions of coverage (docs/techniques/forward.md#coverage-sampling).
@@ -87,12 +93,13 @@ FrameGraph build_coverage(const FrameRequest& request, const CoverageOptions& op
   return graph;
 }
 
-FrameGraph build_none(const FrameRequest& request, const NoOptions&) {
+FrameGraph build_none(const FrameRequest& request, const PlainOptions& options) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
   ForwardTarget target;
   target.width = graph.width();
   target.height = graph.height();
+  target.prepass = options.prepass;
   target.color = add_output(graph);
   target.depth = graph.add_image({"depth", Format::d24_unorm_s8, graph.width(), graph.height(), 1});
   add_forward(graph, parts, "", target);
@@ -111,7 +118,7 @@ FrameGraph build_ssaa(const FrameRequest& request, const SsaaOptions& options) {
       build_accumulated(graph, parts, factor);
       break;
     case SsaaVariant::sample_rate:
-      build_multisampled(graph, parts, options.samples, false, true);
+      build_multisampled(graph, parts, {.samples = options.samples, .centroid = false}, true);
       break;
   }
   return graph;
@@ -122,9 +129,9 @@ FrameGraph build_layers(const FrameRequest& request, const MsaaOptions& options,
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_frame(graph, request);
   if (layers.viewports.empty())
-    build_multisampled(graph, parts, options.samples, options.centroid, false);
+    build_multisampled(graph, parts, options, false);
   else
-    build_multicast(graph, parts, options.samples, options.centroid, layers);
+    build_multicast(graph, parts, options, layers);
   return graph;
 }
 
@@ -155,6 +162,8 @@ MsaaOptions samples(int count) { return {.samples = count}; }
 
 }  // namespace
 
+void describe(OptionList& list, PlainOptions& o) { describe_prepass(list, o.prepass); }
+
 void describe(OptionList& list, SsaaOptions& o) {
   list.fixed("samples", o.samples, "shaded samples a pixel");
   list.choice("variant", o.variant, "ordered|accumulate|sample_rate",
@@ -164,6 +173,7 @@ void describe(OptionList& list, SsaaOptions& o) {
 void describe(OptionList& list, MsaaOptions& o) {
   list.fixed("samples", o.samples, "samples a pixel");
   describe_centroid(list, o.centroid);
+  describe_prepass(list, o.prepass);
 }
 
 void describe(OptionList& list, ManySamplesOptions& o) {
@@ -201,7 +211,8 @@ Room forward_room() {
                          "coverage sampling: fewer color and depth samples than positions of coverage",
                          build_csaa),
                      base_technique("eqaa", "enhanced quality: coverage sampling by its other name and modes",
-                                    build_eqaa)},
+                                    build_eqaa),
+                     forward_plus_technique()},
       .counters = BaseCounters::kDeclared,
       .shaded = {BaseCounters::lit_samples}};
 }

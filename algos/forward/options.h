@@ -5,6 +5,11 @@
 
 namespace hwsim::algos {
 
+struct PlainOptions {
+  bool prepass = false;
+};
+void describe(OptionList& list, PlainOptions& o);
+
 enum class SsaaVariant : std::uint8_t { ordered, accumulate, sample_rate };
 struct SsaaOptions {
   int samples = 4;  ///< a square
@@ -15,6 +20,7 @@ void describe(OptionList& list, SsaaOptions& o);
 struct MsaaOptions {
   int samples = 4;
   bool centroid = true;
+  bool prepass = false;
 };
 void describe(OptionList& list, MsaaOptions& o);
 
@@ -42,5 +48,11 @@ struct EqaaOptions {
   CoverageOptions coverage;
 };
 void describe(OptionList& list, EqaaOptions& o);
+
+struct ForwardPlusOptions {
+  int samples = 1;
+  bool centroid = true;
+};
+void describe(OptionList& list, ForwardPlusOptions& o);
 
 }  // namespace hwsim::algos
