@@ -31,8 +31,8 @@ constexpr int kSamples = 8;
 constexpr const char* kReference =
     "deferred_simple_complex:samples=8,z_scale=0,normal_dot_min=1,centroid=off";
 constexpr const char* kAggregates = "agaa:c=2,msaa=8";
-constexpr const char* kTop = "sbaa_top:n=6,msaa=8,centroid=off";
-constexpr const char* kMerge = "sbaa_merge:n=6,msaa=8,centroid=off";
+constexpr const char* kTop = "sbaa_top:n=6,msaa=8";
+constexpr const char* kMerge = "sbaa_merge:n=6,msaa=8";
 
 struct Study {
   int width_px = 1280, height_px = 720, jobs = 2;

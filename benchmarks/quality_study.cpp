@@ -151,15 +151,22 @@ double masked_rmse(const Image& image, const Image& reference, const std::vector
   return count == 0 ? std::nan("") : std::sqrt(sum / static_cast<double>(count));
 }
 
+/// Share of pixels with a channel that is white at every sample: samples are cut there.
+double overexposed(const Image& image) {
+  const auto white = [](const glm::vec4& p) { return std::max({p.x, p.y, p.z}) > 0.9999f; };
+  return static_cast<double>(std::count_if(image.pixels.begin(), image.pixels.end(), white)) /
+         static_cast<double>(image.pixels.size());
+}
+
 void errors(const std::string& name, const FrameRequest& request, const Image& reference,
             const Study& study) {
   const std::vector<char> bright = highlights(reference);
   const auto share =
       static_cast<double>(std::count(bright.begin(), bright.end(), 1)) / static_cast<double>(bright.size());
   std::printf(
-      "\n### %s\n\nHighlights: %.2f %% of the pixels.\n\n"
+      "\n### %s\n\nHighlights: %.2f %% of the pixels; overexposed: %.2f %%.\n\n"
       "| technique | PSNR dB | RMSE | SSIM | FLIP | RMSE of highlights |\n|---|---|---|---|---|---|\n",
-      name.c_str(), 100.0 * share);
+      name.c_str(), 100.0 * share, 100.0 * overexposed(reference));
   for (const std::string& technique : asked_or(kCompared, study)) {
     try {
       const Image image = frame(technique, request, study);

@@ -62,10 +62,26 @@ class Builder {
     return graph_.add_image({name, format, graph_.width(), graph_.height(), samples, layers});
   }
 
+  DiffuseFilter diffuse() const {
+    switch (o_.diffuse) {
+      case AgaaDiffuse::automatic:
+        return o_.ndf == Ndf::toksvig ? DiffuseFilter::folded : DiffuseFilter::samples;
+      case AgaaDiffuse::off:
+        return DiffuseFilter::off;
+      case AgaaDiffuse::folded:
+        return DiffuseFilter::folded;
+      case AgaaDiffuse::geometric:
+        return DiffuseFilter::geometric;
+      case AgaaDiffuse::samples:
+        return DiffuseFilter::samples;
+    }
+    return DiffuseFilter::off;
+  }
+
   bool separate_gloss() const { return o_.gloss == AgaaGloss::separate; }
 
   LayoutChoice layout_choice(int samples) const {
-    const bool geometric = o_.diffuse == DiffuseFilter::geometric || separate_gloss();
+    const bool geometric = diffuse() == DiffuseFilter::geometric || separate_gloss();
     return {o_.ndf, o_.mask, samples, geometric, o_.depth_moments && !atomic_, o_.half_floats};
   }
 
@@ -142,6 +158,7 @@ class Builder {
     u->unit_mean_normal = o_.mean_normal == AgaaMeanNormal::unit;
     u->seeds = o_.seeds;
     // A layer's planes are its own: layers that stand for one pixel would have to be matched.
+    if (layers_ > 1 && o_.plane_path == AgaaPlanePath::on) refuse_planes();
     const bool wanted = o_.plane_path == AgaaPlanePath::on ||
                         (o_.plane_path == AgaaPlanePath::automatic && features_.compressed_depth_read);
     const bool planes = layers_ == 1 && wanted;
@@ -153,15 +170,27 @@ class Builder {
     if (planes) pass.depth_planes = depth_;
   }
 
+  [[noreturn]] void refuse_planes() const {
+    Diagnostic error;
+    error.code = "T003";
+    error.message = "plane_path = on with msaa = " + std::to_string(o_.samples) + " in " +
+                    std::to_string(layers_) + " layers, must be auto or off";
+    error.help =
+        "each layer's depth has planes of its own; a GPU with as many native samples "
+        "(`--overlay native-msaa-32x`) has one set of them";
+    throw InputError(std::move(error), ExitStatus::usage);
+  }
+
   AggregateUniforms aggregate_uniforms(const AggregateTargets& targets) const {
     AggregateUniforms u;
     u.targets = targets;
     u.ndf = o_.ndf;
     u.rays = rays_;
     u.gloss_reference = static_cast<float>(o_.gloss_reference);
-    // 1/8: |v| = 1/9, whose direction 16 bits still hold to 0.3 degrees at a 32nd of full weight. Where
-    // diffuse light takes the vector's length, rough materials would darken by more than they gain.
-    u.least_exponent = o_.diffuse == DiffuseFilter::folded ? 1.0f : 0.125f;
+    // 1/8: |v| = 1/9, whose direction 16 bits still hold to 0.3 degrees at a 32nd of full weight.
+    u.matte_exponent = diffuse() == DiffuseFilter::folded ? static_cast<float>(o_.matte_exponent) : 0.0f;
+    if (o_.ndf == Ndf::toksvig && o_.brdf == AgaaBrdf::blinn_phong)
+      u.most_energy = (u.least_exponent + 8.0f) / (u.least_exponent + 1.0f);
     u.samples = o_.samples;
     u.code_bits = code_bits_;
     u.width = graph_.width();
@@ -247,7 +276,7 @@ class Builder {
     u->height = graph_.height();
     u->aggregates = o_.aggregates;
     u->positions = positions_;
-    u->diffuse = o_.diffuse;
+    u->diffuse = diffuse();
     u->separate_gloss = separate_gloss();
     u->light_variance = o_.light_variance;
     u->on_receiver = o_.shadow_axis == AgaaShadowAxis::receiver;
@@ -265,7 +294,7 @@ class Builder {
       pass.sampled = targets_;
     u->depth_slot = static_cast<int>(pass.sampled.size());
     pass.sampled.push_back(depth_);
-    if (o_.diffuse == DiffuseFilter::samples) {
+    if (diffuse() == DiffuseFilter::samples) {
       u->normal_slot = static_cast<int>(pass.sampled.size());
       pass.sampled.push_back(normal_);
     }

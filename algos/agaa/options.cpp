@@ -16,9 +16,11 @@ void describe_surfaces(OptionList& list, AgaaOptions& o) {
 void describe_lobes(OptionList& list, AgaaOptions& o) {
   list.choice("ndf", o.ndf, "toksvig|lean|sggx", "distribution of normals");
   list.choice("brdf", o.brdf, "blinn_phong|ggx", "specular reflection");
-  list.choice("diffuse_filter", o.diffuse, "off|folded|geometric|samples",
-              "diffuse light over the normals: none, by the lobe that holds the gloss too, by a mean of unit "
-              "normals beside it, or by the samples' normals of the first pass");
+  list.choice(
+      "diffuse_filter", o.diffuse, "auto|off|folded|geometric|samples",
+      "diffuse light over the normals: none, by the vector that holds the gloss too, by a mean of unit "
+      "normals beside it, or by the samples' normals of the first pass; auto: folded with toksvig, samples "
+      "with others");
   list.choice("gloss", o.gloss, "folded|separate", "folded into the normals' lobe, or stored beside it");
 }
 
@@ -49,6 +51,9 @@ void describe(OptionList& list, AgaaOptions& o) {
   describe_storage(list, o);
   list.choice("light_variance", o.light_variance, "off|on", "directions to near lights widen the lobe");
   list.whole("visible_normals", o.visible_normals, {4, 32}, "of SGGX's diffuse light");
+  list.real(
+      "s_matte", o.matte_exponent, {0, 1000},
+      "diffuse_filter=folded: added to the exponent that the vector holds, by the share of diffuse light");
   list.real("s_ref", o.gloss_reference, {0, 65535}, "Toksvig's reference exponent; 0: infinite");
   list.choice("emulate", o.emulate, kEmulateChoices,
               "layers of 8 samples, by viewport multicast, or native samples");

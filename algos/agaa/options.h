@@ -10,6 +10,8 @@
 namespace hwsim::algos {
 
 enum class AgaaBrdf : std::uint8_t { blinn_phong, ggx };
+/// `automatic`: folded in a Toksvig vector, from the samples' normals with other distributions.
+enum class AgaaDiffuse : std::uint8_t { automatic, off, folded, geometric, samples };
 enum class AgaaGloss : std::uint8_t { folded, separate };
 enum class AgaaScale : std::uint8_t { world, footprint };  ///< what the length k is measured by
 enum class AgaaMeanNormal : std::uint8_t { unit, raw };    ///< in the search of the first seed
@@ -24,7 +26,7 @@ struct AgaaOptions {
   double separation = 0.02;  ///< the t of the paper
   Ndf ndf = Ndf::toksvig;
   AgaaBrdf brdf = AgaaBrdf::blinn_phong;
-  DiffuseFilter diffuse = DiffuseFilter::samples;
+  AgaaDiffuse diffuse = AgaaDiffuse::automatic;
   AgaaGloss gloss = AgaaGloss::folded;
   AgaaScale k_mode = AgaaScale::world;
   double footprint_px = 8.0;
@@ -37,6 +39,7 @@ struct AgaaOptions {
   bool light_variance = false;
   int visible_normals = 8;
   double gloss_reference = 0.0;  ///< Toksvig's reference exponent; 0: infinite
+  double matte_exponent = 32.0;  ///< what diffuse light adds to the exponent that the vector holds
   Emulate emulate = Emulate::automatic;
   AgaaAccumulate accumulate = AgaaAccumulate::automatic;
   bool centroid = true;

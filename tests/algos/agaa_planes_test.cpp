@@ -105,6 +105,9 @@ TEST(AgaaPlanes, LayersGoBySamples) {
   EXPECT_EQ(total(render({scene, "agaa:msaa=32", features}).trace)
                 .technique[algos::AgaaCounters::agaa_plane_path_pixels],
             0u);
+  // Asked for, they are refused, not left out.
+  EXPECT_THROW(render({scene, "agaa:msaa=32,plane_path=on", features}), InputError);
+  EXPECT_NO_THROW(render({scene, "agaa:msaa=8,plane_path=on", features}));
 }
 
 }  // namespace

@@ -85,9 +85,6 @@ TEST(Agaa, SamplesNormalsFilterDiffuseLightAsStoredOnesDo) {
     EXPECT_LT(largest_difference(stored, samples), 0.008f) << roughness;  // two steps of 8 bits
     EXPECT_GT(largest_difference(stored, image("off")), 0.02f) << roughness;
   }
-  EXPECT_GT(largest_difference(render({share(patches({{-5, 5, 0}})), "agaa:diffuse_filter=folded"}).color,
-                               render({share(patches({{-5, 5, 0}})), "agaa"}).color),
-            0.01f);
 }
 
 TEST(Agaa, OnePlaneIsOneAggregateAndOneFragmentsShading) {

@@ -90,6 +90,7 @@ TEST(Options, NamesOfAgaaMeanTheirFields) {
                                 FIELD("brdf", o.brdf),
                                 FIELD("diffuse_filter", o.diffuse),
                                 FIELD("gloss", o.gloss),
+                                FIELD("s_matte", o.matte_exponent),
                                 FIELD("k_mode", o.k_mode),
                                 FIELD("footprint_px", o.footprint_px),
                                 FIELD("mean_normal", o.mean_normal),

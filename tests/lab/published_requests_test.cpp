@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
+#include "algos/techniques.h"
 #include "lab/lab.h"
 #include "lab/studies/published_runs.h"
 #include "lab/workbench.h"
@@ -70,6 +72,24 @@ TEST(PublishedRequests, UnlitRunsHaveNoLightsBesideThoseOfTheScene) {
     EXPECT_EQ(request_of(cost_models::without_lights(cell.run)).view, expected) << cell.row.id();
   }
   EXPECT_GT(unlit, 100u);
+}
+
+// What is timed is what a user gets and what docs/quality.md judges: the published runs of AGAA and SBAA set
+// nothing but what their tables vary, the samples and the surfaces.
+TEST(PublishedRequests, TimedTechniquesAreTheirDefaults) {
+  std::set<std::string> seen;
+  for (const cost_models::Cell& cell : published_cells({}, ConfigFolder())) {
+    const bool own = cell.row.technique == "AGAA" || cell.row.technique.rfind("SBAA-", 0) == 0;
+    if (!cell.has_run || !own) continue;
+    const algos::TechniqueChoice choice = algos::parse_technique(cell.run.technique);
+    std::string text = algos::technique_text(choice);
+    for (const char* varied : {"n=3", "msaa=4", "msaa=32"})
+      if (const std::size_t at = text.find(varied); at != text.npos)
+        text.erase(at - 1, std::string(varied).size() + 1);  // with the colon or comma before it
+    EXPECT_TRUE(text == "agaa" || text == "sbaa_top" || text == "sbaa_merge") << cell.run.technique;
+    seen.insert(text);
+  }
+  EXPECT_EQ(seen.size(), 3u);
 }
 
 TEST(PublishedRequests, SettingsThatNoRequestTakesAreRefusedWithTheirFile) {

@@ -48,10 +48,11 @@ F gloss_of(F exponent, const AggregateUniforms& u) {
 
 template <class F, class I>
 void set_shape(const AggregateUniforms& u, const PixelBasis<F>& basis, const lanes::Surface<F>& surface,
-               const Vec3<F>& n, F weight, AggregateRecord<F, I>& r) {
+               const Vec3<F>& n, F luma, F weight, AggregateRecord<F, I>& r) {
   switch (u.ndf) {
     case Ndf::toksvig: {
-      const F length = gloss_of(surface.exponent, u) * weight;
+      const F own = max(surface.exponent, F(u.least_exponent));
+      const F length = gloss_of(own + matte_exponent(u, surface.albedo, luma), u) * weight;
       r.shape[0] = n.x * length;
       r.shape[1] = n.y * length;
       r.shape[2] = n.z * length;
@@ -137,8 +138,10 @@ struct GenerateShader {
     const F weight = r.count * F(1.0f / static_cast<float>(a.samples));
     PixelBasis<F> basis{};
     if (a.ndf == Ndf::lean) basis = pixel_basis<F>(a.rays, s.pixel_x(), s.pixel_y());
-    set_shape(a, basis, surface, material.normal, weight, r);
     encode_specular(surface.specular, r.luma, r.cb, r.cr);
+    if (a.most_energy > 0.0f)
+      r.luma = r.luma * lobe_energy(max(surface.exponent, F(a.least_exponent))) * F(1.0f / a.most_energy);
+    set_shape(a, basis, surface, material.normal, r.luma, weight, r);
     r.luma = r.luma * weight;
     r.cb = r.cb * weight;
     r.cr = r.cr * weight;
@@ -240,6 +243,7 @@ template <bool kAtomic>
 FragmentProgram describe_generate(Ndf ndf, bool full, void (*run)(FragmentBatch&, const void*)) {
   GenerateUniforms uniforms;
   uniforms.aggregate.ndf = ndf;
+  if (ndf == Ndf::toksvig) uniforms.aggregate.most_energy = 8.0f;
   if (ndf != Ndf::toksvig) uniforms.aggregate.targets.shape_rest = 3;
   if (ndf == Ndf::sggx) uniforms.aggregate.targets.luma = 4;
   FragmentProgram program =

@@ -50,9 +50,10 @@ class AggregateLight {
     surface_.to_eye = normalize(-place_);
     surface_.position = place_ + constant<F>(u_.lighting.eye);
     surface_.albedo = r.albedo;
-    surface_.specular = decode_specular(r.luma, r.cb, r.cr);
     surface_.emissive = {r.emissive, r.emissive, r.emissive};
     find_shape(r);
+    surface_.specular = decode_specular(r.luma, F(kNoChroma) + (r.cb - F(kNoChroma)) * chroma_scale_,
+                                        F(kNoChroma) + (r.cr - F(kNoChroma)) * chroma_scale_);
     s_.uniform_branch(kLobeBlock, u_.diffuse != DiffuseFilter::off && !by_visible_normals(),
                       [&]() HWY_ATTR { lobe_ = diffuse_lobe(diffuse_length_); });
     return light();
@@ -193,8 +194,13 @@ class AggregateLight {
         const F length2 = dot(v, v);
         length_ = min(sqrt(length2), F(1.0f - 1.0f / 65535.0f));
         surface_.normal = select(length2 > F(1e-12f), normalize(v), surface_.to_eye);  // opposed normals
-        set_gloss(exponent_of(length_, u_.aggregate.gloss_reference));
-        diffuse_length_ = length_;
+        // The roughest material's vector has the least length that gloss alone gives: what is shorter than
+        // that is spread for certain.
+        matte_ = matte_exponent(u_.aggregate, r.albedo, max(r.luma, F(0.0f)));
+        set_gloss(
+            max(exponent_of(length_, u_.aggregate.gloss_reference) - matte_, F(u_.aggregate.least_exponent)));
+        const F roughest = matte_ + F(u_.aggregate.least_exponent);
+        diffuse_length_ = min(length_ * (roughest + F(1.0f)) / roughest, F(1.0f - 1.0f / 65535.0f));
         break;
       }
       case Ndf::lean:
@@ -235,14 +241,22 @@ class AggregateLight {
   /// What of the lobe is the material's own. `own`: its exponent where that is stored; else of the whole
   /// lobe, from which the geometry's spread is taken where it is known.
   void set_own_scale(const AggregateRecord<F, I>& r, bool stored, F own) {
-    const bool spread_known = u_.diffuse == DiffuseFilter::samples || u_.diffuse == DiffuseFilter::geometric;
+    const bool spread_known = u_.diffuse == DiffuseFilter::samples ||
+                              u_.diffuse == DiffuseFilter::geometric ||
+                              (u_.diffuse == DiffuseFilter::folded && u_.aggregate.ndf == Ndf::toksvig);
     const F longest(1.0f - 1.0f / 65535.0f);
+    const float most = u_.aggregate.most_energy;
+    chroma_scale_ = F(1.0f);
+    if (u_.aggregate.ndf == Ndf::toksvig && most <= 0.0f) return;  // GGX's lobes are normalized
     switch (u_.aggregate.ndf) {
       case Ndf::toksvig:  // lengths multiply
         if (spread_known && !stored)
           own = max(own, exponent_of(min(length_ / max(diffuse_length_, F(1e-6f)), longest),
-                                     u_.aggregate.gloss_reference));
-        own_scale_ = own_lobe_scale(own);
+                                     u_.aggregate.gloss_reference) -
+                             matte_);
+        // The luma holds what the materials' lobes reflect; chroma, of eight bits, follows the own one's.
+        own_scale_ = F(kOwnLobeScale * most);
+        chroma_scale_ = lobe_energy(own) * F(1.0f / most);
         break;
       case Ndf::lean:  // variances add: the spread's as slopes have it at the mean normal's tilt
         if (spread_known) {
@@ -391,6 +405,8 @@ class AggregateLight {
   Vec3<F> from_center_{};       ///< the samples' mean place, from `place_` on the pixel's middle ray
   SymmetricMatrix<F> covariance_{};
   F length_{}, diffuse_length_{}, own_scale_{};
+  F chroma_scale_{};
+  F matte_{};  ///< what the stored exponent is beyond the lobe's
   DiffuseLobe<F> lobe_{};
   Lean<F> lean_{};
   Sggx<F> sggx_{};

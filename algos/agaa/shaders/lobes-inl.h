@@ -133,11 +133,9 @@ F diffuse_of(const DiffuseLobe<F>& lobe, F mu) {
 
 /// What a lobe of normals with exponent a reflects of a material with exponent s: its density in h,
 /// (a+1)/(2 pi) (n.h)^a, times the integral of the material's own lobe, (s+8)/(8 pi) 2 pi/(s+1). Toksvig's
-/// factor (1+a)/(1+s) on the normalized lobe; a = s where nothing spreads. This is what does not depend on a.
-template <class F>
-F own_lobe_scale(F own_exponent) {
-  return (own_exponent + F(8.0f)) / (own_exponent + F(1.0f)) * F(0.0397887358f);
-}
+/// factor (1+a)/(1+s) on the normalized lobe; a = s where nothing spreads. This is what does not depend on a,
+/// for an energy of 1.
+inline constexpr float kOwnLobeScale = 0.0397887358f;
 
 template <class F>
 Vec3<F> blinn_phong_specular(const lanes::Surface<F>& s, F own_scale, const Vec3<F>& l) {

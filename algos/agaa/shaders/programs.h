@@ -44,11 +44,15 @@ struct AggregateUniforms {
   AggregateTargets targets;
   Ndf ndf = Ndf::toksvig;
   PixelRays rays;
-  float gloss_reference = 0.0f;  ///< S of docs/techniques/agaa.md#shading; 0: infinite
-  float least_exponent = 1.0f;   ///< a lobe so wide that its Toksvig vector would vanish keeps this
-  int samples = 8;               ///< samples of all layers together
-  int code_bits = 1;             ///< bits of a sample's code; 0: there is one aggregate
-  int width = 1;                 ///< width of the frame in pixels: addresses of the storage buffer
+  float gloss_reference = 0.0f;   ///< S of docs/techniques/agaa.md#shading; 0: infinite
+  float least_exponent = 0.125f;  ///< a lobe so wide that its Toksvig vector would vanish keeps this
+  float matte_exponent = 0.0f;    ///< added to exponents by the share of light that is diffuse
+  /// The specular color is stored times what its lobe reflects in total, over this, the most that one does;
+  /// 0: as it is.
+  float most_energy = 0.0f;
+  int samples = 8;    ///< samples of all layers together
+  int code_bits = 1;  ///< bits of a sample's code; 0: there is one aggregate
+  int width = 1;      ///< width of the frame in pixels: addresses of the storage buffer
 };
 
 struct VisibilityUniforms {

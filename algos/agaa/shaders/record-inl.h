@@ -121,6 +121,20 @@ Vec3<F> decode_specular(F luma, F cb, F cr) {
   return {max(r, F(0.0f)), max(g, F(0.0f)), max(b, F(0.0f))};
 }
 
+/// What a normalized Blinn-Phong lobe of exponent s reflects in total, times a constant.
+template <class F>
+F lobe_energy(F s) {
+  return (s + F(8.0f)) / (s + F(1.0f));
+}
+
+/// What the vector's exponent is beyond the material's (docs/techniques/agaa.md#shading). `luma`: as
+/// stored.
+template <class F>
+F matte_exponent(const AggregateUniforms& u, const Vec3<F>& albedo, F luma) {
+  const F matte = albedo.x * F(0.299f) + albedo.y * F(0.587f) + albedo.z * F(0.114f);
+  return F(u.matte_exponent) * matte / max(matte + luma, F(1e-4f));
+}
+
 /// One byte of a mask as a unorm8 channel: disjoint masks add without carry.
 template <class F, class I>
 F mask_byte(I mask, int byte) {

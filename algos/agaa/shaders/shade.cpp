@@ -102,6 +102,7 @@ FragmentProgram describe_shade(const ShadeVariant& variant, void (*run)(Fragment
   ShadeUniforms uniforms;
   uniforms.aggregate.ndf = variant.ndf;
   uniforms.on_receiver = variant.on_receiver;
+  if (variant.ndf == Ndf::toksvig) uniforms.aggregate.most_energy = 8.0f;
   uniforms.lighting.extended = variant.extended;
   if (variant.ndf != Ndf::toksvig) uniforms.aggregate.targets.shape_rest = 3;
   if (variant.ndf == Ndf::sggx) uniforms.aggregate.targets.luma = 4;
