@@ -138,8 +138,10 @@ void thin(std::vector<BlockAccess>& accesses, BlockKinds& kinds, std::size_t acc
   for (std::size_t s = 0; s < kinds.size(); ++s) {
     const auto stream = static_cast<ReuseStream>(s);
     const auto of_stream = [stream](const BlockAccess& a) { return a.stream == stream; };
-    while (kinds[s].shift < 12 && static_cast<std::size_t>(std::count_if(accesses.begin(), accesses.end(),
-                                                                         of_stream)) > accesses_max) {
+    while (kinds[s]
+               .shift<kShiftMax&& static_cast<std::size_t>(
+                   std::count_if(accesses.begin(), accesses.end(), of_stream))>
+                   accesses_max) {
       const int shift = ++kinds[s].shift;
       std::erase_if(accesses,
                     [&](const BlockAccess& a) { return of_stream(a) && !is_sampled(a.block, shift); });

@@ -88,6 +88,9 @@ constexpr bool is_sampled(std::uint32_t block, int shift) {
 using RunParts = std::function<void(std::size_t count, const std::function<void(std::size_t)>& part)>;
 void run_in_order(std::size_t count, const std::function<void(std::size_t)>& part);
 
+/// The smallest sample has one block in 2^kShiftMax.
+inline constexpr int kShiftMax = 12;
+
 /// The curves of a pass. Streams with more accesses than `accesses_max` are thinned first.
 ReuseProfile analyze_reuse(std::vector<BlockAccess> accesses, BlockKinds kinds, std::size_t accesses_max,
                            const RunParts& run_parts = run_in_order);

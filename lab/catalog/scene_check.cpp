@@ -79,7 +79,7 @@ void add_coarse_shadows(const std::string& name, const pipeline::Scene& scene, s
 
 /// What there is to say about a scene that loads; of a file, what it uses too.
 std::vector<Diagnostic> findings(const std::string& name, const pipeline::Scene& scene) {
-  std::vector<Diagnostic> all = is_file(name) ? pipeline::check_gltf(name) : scene.notes;
+  std::vector<Diagnostic> all = is_file(name) ? pipeline::check_scene(scene, name) : scene.notes;
   add_coarse_shadows(name, scene, all);
   return all;
 }

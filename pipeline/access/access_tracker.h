@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "hwsim/trace/reuse.h"
@@ -12,21 +13,32 @@ namespace hwsim::pipeline {
 
 inline constexpr std::uint32_t kLineBytes = 64;
 
+/// Accesses of a stream that are kept: bounds the memory that noting a pass takes, and the time that
+/// analyzing it takes.
+inline constexpr std::size_t kAccessesMax = 32768;
+
 struct AccessTracker {
   static constexpr std::size_t kAtomicSlots = 16384;
   static constexpr std::size_t kQuads = 16;  ///< a batch of 64 lanes has as many
 
-  BlockKinds kinds;
+  BlockKinds kinds;  ///< what is followed: with the sample that the pass began with
+  /// The sample is halved whenever a stream has more than the most that are kept: the analysis would drop
+  /// these accesses too (make_reuse_profile).
   std::vector<BlockAccess> accesses;
+  BlockKinds kept;  ///< the samples of `accesses`
   /// Texture accesses by the number of first-level cache sizes (hwsim/trace/reuse.h) that miss them.
   std::array<std::uint64_t, kCacheSizes + 1> l1_missing{};
   /// Two addresses in one slot add up: that overrates the most frequent address by a 16384th of all atomics,
   /// which takes a small part of their time where addresses differ.
   std::vector<std::uint32_t> atomics;
 
-  void start_pass(const BlockKinds& block_kinds, bool storage) {
-    kinds = block_kinds;
+  /// `accesses_max`: kAccessesMax, or SIZE_MAX for all.
+  void start_pass(const BlockKinds& block_kinds, bool storage, std::size_t accesses_max) {
+    kinds = kept = block_kinds;
+    accesses_max_ = accesses_max;
     accesses.clear();
+    counts_.fill(0);
+    any_ = last_is_kept_ = false;
     l1_missing.fill(0);
     recent_.start(kinds[index_of(ReuseStream::texture)].shift);
     atomics.assign(storage ? kAtomicSlots : 0, 0);
@@ -61,15 +73,19 @@ struct AccessTracker {
   /// At once, in the order of the calls; the block is one of the sample.
   void touch(ReuseStream stream, std::uint32_t block, std::uint32_t read, std::uint32_t write) {
     const std::uint64_t order = std::uint64_t{primitive_} << 32 | bin_;
-    if (!accesses.empty()) {
-      BlockAccess& last = accesses.back();
-      if (last.block == block && last.stream == stream && last.order == order) {
-        last.read_bytes += read;
-        last.write_bytes += write;
-        return;
-      }
+    const bool again = last_.block == block && last_.stream == stream && last_.order == order;
+    if (again && any_) {
+      if (!last_is_kept_) return;
+      accesses.back().read_bytes += read;
+      accesses.back().write_bytes += write;
+      return;
     }
-    accesses.push_back({order, block, stream, read, write});
+    any_ = true;
+    last_ = {order, block, stream, read, write};
+    last_is_kept_ = is_sampled(block, kept[index_of(stream)].shift);
+    if (!last_is_kept_) return;
+    accesses.push_back(last_);
+    if (++counts_[index_of(stream)] > accesses_max_) halve(stream);
   }
   void touch_if_sampled(ReuseStream stream, std::uint32_t block, std::uint64_t read, std::uint64_t write) {
     if (is_sampled(block, kinds[index_of(stream)].shift))
@@ -81,7 +97,14 @@ struct AccessTracker {
   }
 
  private:
+  /// Drops every other sampled block of the stream, until few enough accesses are left.
+  void halve(ReuseStream stream);
+
   RecentBlocks recent_;
+  std::size_t accesses_max_ = kAccessesMax;
+  std::array<std::size_t, kReuseStreams> counts_{};  ///< accesses kept of each stream
+  BlockAccess last_;                                 ///< kept or not
+  bool any_ = false, last_is_kept_ = false;
   std::array<std::vector<BlockAccess>, kQuads> batch_;
   std::uint32_t bin_ = 0, primitive_ = 0;
 };
@@ -98,9 +121,8 @@ constexpr int sample_shift(std::uint64_t blocks, int shift_max) {
   return shift;
 }
 
-/// Profile of a pass from what its workers noted.
-ReuseProfile make_reuse_profile(std::vector<std::vector<BlockAccess>> by_worker, const BlockKinds& kinds,
-                                const std::array<std::uint64_t, kCacheSizes + 1>& l1_missing, bool exact,
-                                int jobs);
+/// Profile of a pass from what its workers noted, whose accesses it takes. The same for any number of
+/// workers: a sample that is too large for one of them is too large for all together.
+ReuseProfile make_reuse_profile(std::span<AccessTracker* const> workers, bool exact, int jobs);
 
 }  // namespace hwsim::pipeline

@@ -100,7 +100,7 @@ struct WriteTargets {
 };
 
 HWY_INLINE std::uint32_t* quad_texels(GpuImage& image, int block, int quad_in_block, int sample, int word) {
-  return image.block(block) + (sample * image.words + word) * kBlockLanes + 4 * quad_in_block;
+  return image.sample_of_block(block, sample) + word * kBlockLanes + 4 * quad_in_block;
 }
 
 /// Writes four lanes' texels where `mask` says so.
@@ -119,7 +119,7 @@ HWY_INLINE void store_quad(const std::int32_t* from, std::uint32_t mask, std::ui
 /// Writes a tile's texels of one sample where `mask` says so.
 inline void store_tile(GpuImage& image, int block, int sample, std::uint64_t mask,
                        const EncodedBatch& texels) {
-  auto* base = reinterpret_cast<std::int32_t*>(image.block(block)) + sample * image.words * kBlockLanes;
+  auto* base = reinterpret_cast<std::int32_t*>(image.sample_of_block(block, sample));
   for (int w = 0; w < image.words; ++w) {
     std::int32_t* to = base + w * kBlockLanes;
     for (int first = 0; first < kBlockLanes; first += kVectorLanes)
@@ -205,8 +205,7 @@ inline void blend_lanes(const GpuImage& image, const BlendState& state, const fl
 /// The same for a tile in place.
 inline void blend_tile(GpuImage& image, const BlendState& state, const float (&color)[4][kBatchLanes],
                        int block, int sample, EncodedBatch& out) {
-  const auto* from =
-      reinterpret_cast<const std::int32_t*>(image.block(block)) + sample * image.words * kBlockLanes;
+  const auto* from = reinterpret_cast<const std::int32_t*>(image.sample_of_block(block, sample));
   for (int w = 0; w < image.words; ++w)
     std::memcpy(out.words[w], from + w * kBlockLanes, sizeof(out.words[w]));
   blend_lanes(image, state, color, kBatchLanes, out);

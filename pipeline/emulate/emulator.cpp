@@ -78,6 +78,11 @@ class FrameRunner {
 
  private:
   GpuImage& image(ImageId id) { return memory_.image(id); }
+  /// For all uses but a shader's reads.
+  GpuImage& whole_image(ImageId id) {
+    image(id).end_reads(options_.jobs);
+    return image(id);
+  }
 
   void run_pass(const Pass& pass, PassWork& work) {
     switch (pass.kind) {
@@ -112,7 +117,7 @@ class FrameRunner {
       c.depth_scale = depth_scale(c.depth->format);
       c.depth_bytes = info(c.depth->format).bytes;
     }
-    for (const ImageId id : pass.color) c.color.push_back(&image(id));
+    for (const ImageId id : pass.color) c.color.push_back(&whole_image(id));
     if (pass.coverage_samples > 0) c.coverage_map = c.color.front();
     set_viewports(pass, c);
     bind(pass, c.resources);
@@ -130,12 +135,13 @@ class FrameRunner {
       resources.depth_planes = &planes_;
     }
     for (std::size_t i = 0; i < pass.sampled.size(); ++i) {
-      image(pass.sampled[i]).use_all(options_.jobs);
+      image(pass.sampled[i]).begin_reads(options_.skip.single_color_pixels, options_.jobs);
+      if (pass.sampled[i].index != pass.depth_planes.index) image(pass.sampled[i]).release_planes();
       resources.images[i] = &image(pass.sampled[i]);
       resources.formats[i] = pass.view_of(graph_, i);
     }
     for (std::size_t i = 0; i < pass.targets.size() && i < resources.targets.size(); ++i) {
-      image(pass.targets[i]).use_all(options_.jobs);
+      whole_image(pass.targets[i]).use_all(options_.jobs);
       image(pass.targets[i]).forget_colors();
       resources.targets[i] = &image(pass.targets[i]);
       resources.target_formats[i] = pass.target_view_of(graph_, i);
@@ -212,7 +218,7 @@ class FrameRunner {
     const BlockKinds kinds = block_kinds(graph_, pass, c, textures_.line_count(), options_.exact_reuse);
     for (BinWorker& worker : workers_) {
       worker.chunks.assign(chunk_count, PassCounters{});
-      worker.tracker.start_pass(kinds, !pass.storage.empty());
+      worker.tracker.start_pass(kinds, !pass.storage.empty(), options_.exact_reuse ? SIZE_MAX : kAccessesMax);
       worker.resources = c.resources;
       worker.resources.tracker = &worker.tracker;
     }
@@ -350,8 +356,8 @@ class FrameRunner {
 
   void run_transfer(const Pass& pass, PassWork& work) {
     std::vector<GpuImage*> targets;
-    for (const ImageId id : pass.targets) targets.push_back(&image(id));
-    GpuImage* source = pass.source ? &image(pass.source) : nullptr;
+    for (const ImageId id : pass.targets) targets.push_back(&whole_image(id));
+    GpuImage* source = pass.source ? &whole_image(pass.source) : nullptr;
     if (source != nullptr && pass.kind == PassKind::copy) source->use_all(options_.jobs);
     for (GpuImage* target : targets) {
       if (pass.kind == PassKind::clear) memory_.count_untouched(*target);
@@ -367,7 +373,7 @@ class FrameRunner {
   }
 
   Image read_output() {
-    GpuImage& from = image(graph_.output());
+    GpuImage& from = whole_image(graph_.output());
     from.use_all(options_.jobs);
     return to_linear_image(from, graph_.output_view(), options_.jobs);
   }

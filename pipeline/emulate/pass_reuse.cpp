@@ -51,14 +51,9 @@ BlockKinds block_kinds(const FrameGraph& graph, const Pass& pass, const PassCont
 
 // Requests of tiles are those of the sample: their ratio varies less than either. Those of lines are known.
 ReuseProfile merge_reuse(std::span<BinWorker> workers, const PassWork& work, bool exact, int jobs) {
-  std::vector<std::vector<BlockAccess>> accesses;
-  std::array<std::uint64_t, kCacheSizes + 1> l1_missing{};
-  for (BinWorker& worker : workers) {
-    accesses.push_back(std::move(worker.tracker.accesses));
-    for (std::size_t i = 0; i < l1_missing.size(); ++i) l1_missing[i] += worker.tracker.l1_missing[i];
-  }
-  ReuseProfile profile =
-      make_reuse_profile(std::move(accesses), workers.front().tracker.kinds, l1_missing, exact, jobs);
+  std::vector<AccessTracker*> trackers;
+  for (BinWorker& worker : workers) trackers.push_back(&worker.tracker);
+  ReuseProfile profile = make_reuse_profile(trackers, exact, jobs);
   const MemCounters mem = total(work).mem;
   const auto request = [&profile](ReuseStream stream, std::uint64_t read, std::uint64_t write) {
     for (MissCurve* curve : {&profile.shared[index_of(stream)], &profile.apart[index_of(stream)]}) {

@@ -24,13 +24,14 @@ namespace hwsim::pipeline::HWY_NAMESPACE {
 
 /// The sum over the samples of one register of pixels, in pairs: a power of two of equal values sums without
 /// rounding, so that pixels of one color give that color whether their samples are read or not.
-HWY_INLINE Vec4<LaneF> sum_samples(const GpuImage& from, const std::int32_t* source, int first) {
+HWY_INLINE Vec4<LaneF> sum_samples(const GpuImage& from, int block, int first) {
   Vec4<LaneF> partial[6] = {};
   const float* srgb = srgb_decode_table().data();
   int level = 0;
   for (int s = 0; s < from.samples; ++s) {
+    const auto* at_sample = reinterpret_cast<const std::int32_t*>(from.sample_of_block(block, s));
     LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
-    for (int w = 0; w < from.words; ++w) words[w] = load(source + (s * from.words + w) * kBlockLanes + first);
+    for (int w = 0; w < from.words; ++w) words[w] = load(at_sample + w * kBlockLanes + first);
     Vec4<LaneF> sum = decode_texel<LaneF, LaneI>(from.format, words, srgb);
     for (level = 0; (s >> level & 1) != 0; ++level) sum = partial[level] + sum;
     partial[level] = sum;
@@ -39,8 +40,7 @@ HWY_INLINE Vec4<LaneF> sum_samples(const GpuImage& from, const std::int32_t* sou
 }
 
 /// Each color with the positions that name its sample (memory/coverage_map.h).
-HWY_INLINE Vec4<LaneF> mean_of_positions(const GpuImage& from, const std::int32_t* source, int block,
-                                         int first) {
+HWY_INLINE Vec4<LaneF> mean_of_positions(const GpuImage& from, int block, int first) {
   HWY_ALIGN float weight[kMaxSamples][kVectorLanes] = {};
   const CoverageLayout& layout = coverage_layout(from.samples, from.coverage_samples);
   const std::uint64_t whole = from.coverage_whole[static_cast<std::size_t>(block)];
@@ -55,8 +55,9 @@ HWY_INLINE Vec4<LaneF> mean_of_positions(const GpuImage& from, const std::int32_
   }
   Vec4<LaneF> sum{LaneF(0.0f), LaneF(0.0f), LaneF(0.0f), LaneF(0.0f)};
   for (int s = 0; s < from.samples; ++s) {
+    const auto* at_sample = reinterpret_cast<const std::int32_t*>(from.sample_of_block(block, s));
     LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
-    for (int w = 0; w < from.words; ++w) words[w] = load(source + (s * from.words + w) * kBlockLanes + first);
+    for (int w = 0; w < from.words; ++w) words[w] = load(at_sample + w * kBlockLanes + first);
     const Vec4<LaneF> c = decode_texel<LaneF, LaneI>(from.format, words, srgb_decode_table().data());
     sum = sum + c * load(weight[s]);
   }
@@ -75,9 +76,9 @@ void resolve_block(const GpuImage& from, GpuImage& to, int block, std::uint64_t 
       for (int w = 0; w < from.words; ++w) words[w] = load(source + w * kBlockLanes + first);
       mean = decode_texel<LaneF, LaneI>(from.format, words, srgb);
     } else if (from.coverage_samples > 0) {
-      mean = mean_of_positions(from, source, block, first);
+      mean = mean_of_positions(from, block, first);
     } else {
-      mean = sum_samples(from, source, first) * weight;
+      mean = sum_samples(from, block, first) * weight;
     }
     LaneI encoded[4];
     encode_texel<LaneF, LaneI>(to.format, mean, encoded);

@@ -73,8 +73,8 @@ constexpr const char* kRadiusAttribute = "_HWSIM_RADIUS";
 
 class MeshBuilder {
  public:
-  MeshBuilder(Report& report, const tinygltf::Model& model, const MaterialSet& materials)
-      : report_(report), model_(model), materials_(materials) {}
+  MeshBuilder(Report& report, const tinygltf::Model& model, const MaterialSet& materials, ViewRelease& views)
+      : report_(report), model_(model), materials_(materials), views_(views) {}
 
   void add(const tinygltf::Primitive& primitive, const std::string& where, int material) {
     if (!draws_triangles(primitive, where)) return;
@@ -138,6 +138,7 @@ class MeshBuilder {
     std::vector<std::uint32_t> order;
     if (primitive.indices >= 0) {
       order = read_indices(report_, model_, primitive.indices, where + " indices");
+      views_.copied(primitive.indices);
       const auto bad =
           std::find_if(order.begin(), order.end(), [&](std::uint32_t i) { return i >= vertex_count; });
       if (bad != order.end())
@@ -259,13 +260,22 @@ class MeshBuilder {
     return out;
   }
 
+  void is_copied(const tinygltf::Primitive& primitive, const char* name) {
+    if (const int accessor = attribute(primitive, name); accessor >= 0) views_.copied(accessor);
+  }
+
   Vertices read_vertices(const tinygltf::Primitive& primitive, const std::string& where, const Needs& needs) {
     Vertices v;
     v.positions = read_attribute<glm::vec3>(primitive, "POSITION", where);
+    is_copied(primitive, "POSITION");
     v.normals = read_attribute<glm::vec3>(primitive, "NORMAL", where);
+    is_copied(primitive, "NORMAL");
     v.uv0 = read_coordinates(primitive, needs.uv_sources.sets[0], where);
     v.uv1 = read_coordinates(primitive, needs.uv_sources.sets[1], where);
+    is_copied(primitive, "TEXCOORD_0");
+    is_copied(primitive, "TEXCOORD_1");
     v.colors = read_colors(primitive, where);
+    is_copied(primitive, "COLOR_0");
     v.radius = read_attribute<float>(primitive, kRadiusAttribute, where);
     if (needs.tangents || !v.radius.empty())
       v.tangents = read_attribute<glm::vec4>(primitive, "TANGENT", where);
@@ -360,6 +370,7 @@ class MeshBuilder {
   Report& report_;
   const tinygltf::Model& model_;
   const MaterialSet& materials_;
+  ViewRelease& views_;
   Mesh mesh_;
   int index_bytes_ = 0;
   std::map<std::string, std::uint32_t> base_of_;
@@ -368,15 +379,16 @@ class MeshBuilder {
 }  // namespace
 
 BuiltMesh build_mesh(Report& report, const tinygltf::Model& model, int mesh_index,
-                     const MaterialSet& materials, int default_material) {
+                     const MaterialSet& materials, ViewRelease& views) {
   const auto place = static_cast<std::size_t>(mesh_index);
   const tinygltf::Mesh& source = model.meshes[place];
-  MeshBuilder builder(report, model, materials);
+  MeshBuilder builder(report, model, materials, views);
   for (std::size_t i = 0; i < source.primitives.size(); ++i) {
     const tinygltf::Primitive& primitive = source.primitives[i];
     const std::string where = element("meshes", place) + "." + element("primitives", i);
     if (!primitive.targets.empty())
       report.note("S110", "morph targets are ignored: the base shape is drawn", where);
+    const int default_material = static_cast<int>(model.materials.size());
     builder.add(primitive, where, primitive.material >= 0 ? primitive.material : default_material);
   }
   BuiltMesh built = builder.take();

@@ -4,6 +4,7 @@
 
 #include "pipeline/gltf/materials.h"
 #include "pipeline/gltf/source.h"
+#include "pipeline/gltf/view_release.h"
 #include "pipeline/scene/scene.h"
 
 namespace hwsim::pipeline::gltf {
@@ -13,10 +14,11 @@ struct BuiltMesh {
   glm::dmat4 local_from_mesh{1.0};  ///< to the file's coordinates; the identity unless those are out of range
 };
 
-/// The mesh as triangles; a glTF primitive without a material gets `default_material`. `materials` says which
-/// UV sets and tangents the vertices need. Throws InputError (S004, S006, S009, S010).
+/// The mesh as triangles; a glTF primitive without a material gets the one behind the file's. `materials`
+/// says which UV sets and tangents the vertices need. `views` gives back what has been copied: each mesh is
+/// built once. Throws InputError (S004, S006, S009, S010).
 BuiltMesh build_mesh(Report& report, const tinygltf::Model& model, int mesh, const MaterialSet& materials,
-                     int default_material);
+                     ViewRelease& views);
 
 /// Triangles that a primitive, or all of a glTF mesh, draws, from the counts alone.
 std::uint64_t triangles_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive);

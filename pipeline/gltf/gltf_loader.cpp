@@ -11,7 +11,6 @@
 #include "pipeline/gltf/exposure.h"
 #include "pipeline/gltf/extensions.h"
 #include "pipeline/gltf/geometry.h"
-#include "pipeline/gltf/load.h"
 #include "pipeline/gltf/materials.h"
 #include "pipeline/gltf/nodes.h"
 #include "pipeline/gltf/placement.h"
@@ -73,16 +72,17 @@ struct BuiltMeshes {
   std::vector<glm::dmat4> local_from_mesh;
 };
 
-BuiltMeshes build_meshes(Scene& scene, Report& report, const tinygltf::Model& model,
+BuiltMeshes build_meshes(Scene& scene, Report& report, gltf::Source& source,
                          const gltf::MaterialSet& materials, const std::vector<bool>& used) {
+  const tinygltf::Model& model = source.model;
   BuiltMeshes out{std::vector<int>(model.meshes.size(), -1), std::vector<glm::dmat4>(model.meshes.size())};
-  const int default_material = static_cast<int>(model.materials.size());
+  gltf::ViewRelease views(source);
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {
     if (!used[m]) {
       report.note("S116", "meshes that the scene does not use were not loaded", gltf::element("meshes", m));
       continue;
     }
-    gltf::BuiltMesh built = gltf::build_mesh(report, model, static_cast<int>(m), materials, default_material);
+    gltf::BuiltMesh built = gltf::build_mesh(report, model, static_cast<int>(m), materials, views);
     if (built.mesh.parts.empty()) continue;
     out.place[m] = static_cast<int>(scene.meshes.size());
     out.local_from_mesh[m] = built.local_from_mesh;
@@ -201,14 +201,11 @@ void expose(Scene& scene, Report& report, double exposure) {
 }
 
 void add_view_and_light(Scene& scene, Report& report, const gltf::Source& source,
-                        const std::vector<PlacedNode>& nodes, std::vector<std::string>* light_names) {
+                        const std::vector<PlacedNode>& nodes) {
   const tinygltf::Model& model = source.model;
   const SceneStats totals = stats(scene);
   const double units_per_m = 1.0 / scene.meters_per_unit;
-  for (gltf::NamedLight& light : gltf::build_lights(report, model, nodes, units_per_m)) {
-    scene.lights.push_back(light.light);
-    if (light_names != nullptr) light_names->push_back(std::move(light.name));
-  }
+  scene.lights = gltf::build_lights(report, model, nodes, units_per_m);
   if (scene.lights.empty()) {
     scene.lights.push_back(default_sun());
     report.note("S117", "the file has no lights: a white sun that casts shadows was added");
@@ -232,8 +229,7 @@ void add_view_and_light(Scene& scene, Report& report, const gltf::Source& source
 
 /// `container` is asked for once, and given back when its bytes have been read.
 template <class ReadContainer>
-Scene load(Report& report, ReadContainer&& container, const SceneLoadOptions& options,
-           std::vector<std::string>* light_names) {
+Scene load(Report& report, ReadContainer&& container, const SceneLoadOptions& options) {
   gltf::Budget budget(report, options.max_memory_bytes);
   gltf::Source source = gltf::read_source(report, container(), options, budget);
   const tinygltf::Model& model = source.model;
@@ -254,10 +250,10 @@ Scene load(Report& report, ReadContainer&& container, const SceneLoadOptions& op
   std::future<std::vector<Texture>> textures =
       std::async(std::launch::async, [&] { return gltf::build_textures(report, source, set.textures); });
   const std::vector<DrawnMesh> drawn =
-      list_drawn(report, source, nodes, build_meshes(scene, report, model, set, used_meshes));
+      list_drawn(report, source, nodes, build_meshes(scene, report, source, set, used_meshes));
   scene.materials = std::move(set.materials);
   place_everything(scene, report, choose_placement(report, scene, drawn, model, nodes), drawn, nodes);
-  add_view_and_light(scene, report, source, nodes, light_names);
+  add_view_and_light(scene, report, source, nodes);
   expose(scene, report, options.exposure);
   scene.textures = textures.get();
   scene.memory_bytes = budget.charged_bytes();
@@ -271,20 +267,15 @@ Scene load(Report& report, ReadContainer&& container, const SceneLoadOptions& op
 }  // namespace
 
 Scene load_gltf(const std::string& path, const SceneLoadOptions& options) {
-  return gltf::load_scene(path, options, nullptr);
+  Report report(path);
+  return load(
+      report, [&] { return gltf::read_container(report, options.max_file_bytes); }, options);
 }
 
 Scene load_glb(std::vector<std::uint8_t> bytes, const std::string& name, const SceneLoadOptions& options) {
   Report report(name);
   return load(
-      report, [&] { return gltf::check_container(report, std::move(bytes), true); }, options, nullptr);
-}
-
-Scene gltf::load_scene(const std::string& path, const SceneLoadOptions& options,
-                       std::vector<std::string>* light_names) {
-  Report report(path);
-  return load(
-      report, [&] { return gltf::read_container(report, options.max_file_bytes); }, options, light_names);
+      report, [&] { return gltf::check_container(report, std::move(bytes), true); }, options);
 }
 
 }  // namespace hwsim::pipeline

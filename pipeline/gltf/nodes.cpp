@@ -210,9 +210,9 @@ glm::dmat4 matrix_above_meshes(const tinygltf::Model& model, const std::vector<P
   return lowest;
 }
 
-std::vector<NamedLight> build_lights(Report& report, const tinygltf::Model& model,
-                                     const std::vector<PlacedNode>& nodes, double units_per_m) {
-  std::vector<NamedLight> out;
+std::vector<Light> build_lights(Report& report, const tinygltf::Model& model,
+                                const std::vector<PlacedNode>& nodes, double units_per_m) {
+  std::vector<Light> out;
   bool shadow_given = false;
   for (const PlacedNode& placed : nodes) {
     const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(placed.node)];
@@ -233,7 +233,8 @@ std::vector<NamedLight> build_lights(Report& report, const tinygltf::Model& mode
     light->casts_shadow = light->kind == LightKind::directional && !shadow_given;
     shadow_given = shadow_given || light->casts_shadow;
     const std::string& own = model.lights[static_cast<std::size_t>(index)].name;
-    out.push_back({*light, !node.name.empty() ? node.name : !own.empty() ? own : where});
+    light->name = !node.name.empty() ? node.name : !own.empty() ? own : where;
+    out.push_back(std::move(*light));
   }
   return out;
 }

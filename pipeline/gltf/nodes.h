@@ -23,12 +23,8 @@ glm::dmat4 matrix_above_meshes(const tinygltf::Model& model, const std::vector<P
 
 /// `units_per_m`: of the scene, whose coordinates the nodes are in; what the file gives in meters is scaled
 /// by it.
-struct NamedLight {
-  Light light;
-  std::string name;  ///< the node's, else the light's own, else "nodes[7]"
-};
-std::vector<NamedLight> build_lights(Report& report, const tinygltf::Model& model,
-                                     const std::vector<PlacedNode>& nodes, double units_per_m);
+std::vector<Light> build_lights(Report& report, const tinygltf::Model& model,
+                                const std::vector<PlacedNode>& nodes, double units_per_m);
 
 /// far_m is 0 where the file leaves it infinite. Wrong cameras are left out with a warning.
 std::vector<Camera> build_cameras(Report& report, const tinygltf::Model& model,

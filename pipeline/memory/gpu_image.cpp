@@ -19,7 +19,7 @@ GpuImage::GpuImage(Format f, int w, int h, int s, int array_layers, int coverage
   blocks_y = (h + kBlockPx - 1) / kBlockPx;
   const std::size_t blocks = static_cast<std::size_t>(blocks_x) * static_cast<std::size_t>(blocks_y) *
                              static_cast<std::size_t>(layers);
-  texels.resize(blocks * block_words());
+  place_texels();
   touched_chunk.resize(blocks);
   cleared.resize(blocks);
   if (format_info.is_depth) {
@@ -43,11 +43,22 @@ GpuImage::GpuImage(Format f, int w, int h, int s, int array_layers, int coverage
   if (format_info.has_stencil) stencil.resize(blocks * static_cast<std::size_t>(s * kBlockLanes));
 }
 
+void GpuImage::place_texels() {
+  const std::size_t blocks = static_cast<std::size_t>(blocks_x) * static_cast<std::size_t>(blocks_y) *
+                             static_cast<std::size_t>(layers);
+  texels.resize(blocks * block_words());
+  first_samples_apart = samples > 1 && layers == 1 && !info(format).is_depth;
+  first_stride = first_samples_apart ? sample_words() : block_words();
+  further_begin = first_samples_apart ? blocks * sample_words() : sample_words();
+  further_stride = first_samples_apart ? block_words() - sample_words() : block_words();
+}
+
 void GpuImage::fill(int block_index) {
   cleared[static_cast<std::size_t>(block_index)] = 0;
-  std::uint32_t* to = block(block_index);
-  for (int plane = 0; plane < samples * words; ++plane)
-    std::fill_n(to + plane * kBlockLanes, kBlockLanes, clear_words[static_cast<std::size_t>(plane % words)]);
+  for (int sample = 0; sample < samples; ++sample)
+    for (int word = 0; word < words; ++word)
+      std::fill_n(sample_of_block(block_index, sample) + word * kBlockLanes, kBlockLanes,
+                  clear_words[static_cast<std::size_t>(word)]);
   if (!stencil.empty()) std::fill_n(stencil_block(block_index), samples * kBlockLanes, clear_stencil);
 }
 
@@ -102,6 +113,12 @@ void GpuImage::start_all(int jobs) {
 
 void GpuImage::use_all(int jobs) {
   for_each_block(jobs, [&](int block) { use(block); });
+}
+
+void GpuImage::release_planes() {
+  if (std::ranges::any_of(plane_count, [](std::uint8_t count) { return count != 0; })) return;
+  give_back_pages(planes.data(), planes.size());
+  give_back_pages(plane_lanes.data(), plane_lanes.size());
 }
 
 void GpuImage::expand_all(int jobs) {

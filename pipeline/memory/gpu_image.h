@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hwsim/trace/format.h"
+#include "pipeline/base/zeroed_vector.h"
 #include "pipeline/memory/depth_planes.h"
 #include "pipeline/raster/tile.h"
 #include "pipeline/state/pipeline_state.h"
@@ -12,23 +13,39 @@
 namespace hwsim::pipeline {
 
 struct GpuImage;
+
+/// The samples but the first of the quads that hold more than one color.
+struct PackedSamples {
+  /// By quad, tile by tile: its first word, or kOneColor where sample 0 stands for all. Empty: not packed.
+  std::vector<std::int32_t> quad_start;
+  /// A quad's lie sample by sample, for each 32-bit word of a texel its four lanes.
+  ZeroedVector<std::uint32_t> words;
+
+  static constexpr std::int32_t kOneColor = -1;
+};
+
 /// Writes the planes of a tile into its texels (memory/depth_expand.cpp).
 void expand_depth_tile(GpuImage& image, int block_index);
 /// Copies sample 0 of the stale lanes of a color tile to the others (memory/stale_samples.cpp).
 void spread_stale_samples(GpuImage& image, int block_index);
 
 /// Texels are stored tile by tile; in a tile layer by layer; in a layer sample by sample; in a sample, for
-/// each 32-bit word of a texel, the 64 lanes. Formats below 32 bits take a word each here; what the simulated
-/// GPU allocates is the format's business. Depth formats hold the depth as an integer that orders as the
-/// depth does (see memory/depth_format.h), stencil apart.
+/// each 32-bit word of a texel, the 64 lanes. Multisampled color has sample 0 of all tiles before the further
+/// samples of the first: tiles of one color touch no memory for those. Formats below 32 bits take a word each
+/// here; what the simulated GPU allocates is the format's business. Depth formats hold the depth as an
+/// integer that orders as the depth does (see memory/depth_format.h), stencil apart.
 struct GpuImage {
   Format format = Format::none;
   int width = 0, height = 0, samples = 1;
   int layers = 1;
   int words = 1;  ///< 32-bit words of a texel
   int blocks_x = 0, blocks_y = 0;
-  std::vector<std::uint32_t> texels;
-  std::vector<std::uint8_t> stencil;  ///< as texels with one word, only for stencil formats
+  bool first_samples_apart = false;  ///< multisampled color without layers
+  std::size_t first_stride = 0;      ///< words from a block's sample 0 to the next one's
+  std::size_t further_begin = 0;     ///< word of the first block's sample 1
+  std::size_t further_stride = 0;    ///< words from a block's sample 1 to the next one's
+  ZeroedVector<std::uint32_t> texels;
+  ZeroedVector<std::uint8_t> stencil;  ///< tile by tile, sample by sample, only for stencil formats
   std::vector<std::uint32_t> depth_min,
       depth_max;                             ///< by tile, depth formats only: bounds, exact after each draw
   std::vector<std::uint32_t> touched_chunk;  ///< by tile: 1 + the last chunk of the current pass that used it
@@ -39,6 +56,7 @@ struct GpuImage {
   std::vector<std::uint64_t> double_lanes;  ///< pixels with two colors
   std::vector<std::uint64_t> second_color;  ///< by sample: pixels of double_lanes that hold the second
   std::vector<std::uint64_t> stale_lanes;   ///< single pixels of which only sample 0 has been written
+  PackedSamples packed;                     ///< while shaders read (begin_reads)
 
   int coverage_samples = 0;                   ///< positions of the coverage map (memory/coverage_map.h)
   std::vector<std::uint64_t> coverage_map;    ///< by pixel, tile by tile
@@ -46,8 +64,8 @@ struct GpuImage {
 
   // Depth formats: tiles held as planes; their texels are stale.
   std::vector<std::uint8_t> plane_count;        ///< by tile; 0: the texels hold the depth
-  std::vector<DepthPlane> planes;               ///< kMaxDepthPlanes a tile
-  std::vector<std::uint64_t> plane_lanes;       ///< lanes of each sample of each of these planes
+  ZeroedVector<DepthPlane> planes;              ///< kMaxDepthPlanes a tile
+  ZeroedVector<std::uint64_t> plane_lanes;      ///< lanes of each sample of each of these planes
   std::vector<SamplePosition> plane_positions;  ///< where samples lay when the planes were written
   std::vector<DepthTileForm> stored_form;       ///< by tile, as last given back to memory
 
@@ -84,17 +102,28 @@ struct GpuImage {
   void start_all(int jobs);
   /// Before texels anywhere are read: fills what is still marked.
   void use_all(int jobs);
+  /// The same before shaders read, who find samples where shade/image_access-inl.h looks for them. `pack`:
+  /// where most quads have one color, the further samples of the others move to `packed`, and the memory that
+  /// they had is given back; texels but those of sample 0 are then stale until end_reads().
+  void begin_reads(bool pack, int jobs);
+  /// Before the image is used in another way.
+  void end_reads(int jobs);
+  /// Gives the memory of planes back where no tile is held as such: a sixth of what depth at 8x takes.
+  void release_planes();
   /// Texels in place of planes; cleared tiles stay so.
   void expand_all(int jobs);
 
   /// A tile's layers lie one after the other, each a block with its own state: so sample s of layer l is also
   /// plane l * samples + s of the tile.
   std::size_t block_words() const { return static_cast<std::size_t>(samples * words * kBlockLanes); }
-  std::uint32_t* block(int block_index) {
-    return texels.data() + static_cast<std::size_t>(block_index) * block_words();
+  /// A block's texels: all of them one after the other, but where first_samples_apart.
+  std::uint32_t* block(int block_index) { return texels.data() + first_word(block_index, 0); }
+  const std::uint32_t* block(int block_index) const { return texels.data() + first_word(block_index, 0); }
+  std::uint32_t* sample_of_block(int block_index, int sample) {
+    return texels.data() + first_word(block_index, sample);
   }
-  const std::uint32_t* block(int block_index) const {
-    return texels.data() + static_cast<std::size_t>(block_index) * block_words();
+  const std::uint32_t* sample_of_block(int block_index, int sample) const {
+    return texels.data() + first_word(block_index, sample);
   }
   std::uint8_t* stencil_block(int block_index) {
     return stencil.data() +
@@ -116,7 +145,6 @@ struct GpuImage {
   }
   /// Lanes of a tile that lie in the image.
   std::uint64_t lanes_inside(int block_index) const;
-  std::size_t tile_words() const { return block_words() * static_cast<std::size_t>(layers); }
   int block_index(int x, int y, int layer = 0) const {
     return ((y / kBlockPx) * blocks_x + x / kBlockPx) * layers + layer;
   }
@@ -124,11 +152,19 @@ struct GpuImage {
   int block_x(int block_index) const { return block_index / layers % blocks_x * kBlockPx; }
   int block_y(int block_index) const { return block_index / layers / blocks_x * kBlockPx; }
   std::size_t word_index(int x, int y, int sample, int word) const {
-    return static_cast<std::size_t>(block_index(x, y)) * block_words() +
-           static_cast<std::size_t>((sample * words + word) * kBlockLanes + lane_of(x & 7, y & 7));
+    return first_word(block_index(x, y), sample) +
+           static_cast<std::size_t>(word * kBlockLanes + lane_of(x & 7, y & 7));
   }
 
  private:
+  void place_texels();
+  void release_further_samples(int row);
+  std::size_t sample_words() const { return static_cast<std::size_t>(words * kBlockLanes); }
+  std::size_t first_word(int block_index, int sample) const {
+    const auto i = static_cast<std::size_t>(block_index);
+    if (sample == 0) return i * first_stride;
+    return further_begin + i * further_stride + static_cast<std::size_t>(sample - 1) * sample_words();
+  }
   template <class Body>
   void for_each_block(int jobs, const Body& body);
 };

@@ -5,8 +5,6 @@
 #include <cstdio>
 #include <utility>
 
-#include "pipeline/gltf/load.h"
-
 namespace hwsim::pipeline {
 namespace {
 
@@ -101,14 +99,12 @@ std::string cameras_line(const Scene& scene) {
          });
 }
 
-std::string lights_line(const Scene& scene, const std::vector<std::string>& names) {
+std::string lights_line(const Scene& scene) {
   constexpr const char* kKinds[] = {"directional", "point", "spot"};
   std::string line = counted(scene.lights.size(), "light") + listed(scene.lights, [&](const Light& light) {
-                       const auto place = static_cast<std::size_t>(&light - scene.lights.data());
                        const double strength = std::max({light.color.x, light.color.y, light.color.z});
-                       return "`" + (place < names.size() ? names[place] : "default sun") + "` (" +
-                              kKinds[static_cast<std::size_t>(light.kind)] + ", " + number(strength) +
-                              (light.casts_shadow ? ", casts shadows)" : ")");
+                       return "`" + light.name + "` (" + kKinds[static_cast<std::size_t>(light.kind)] + ", " +
+                              number(strength) + (light.casts_shadow ? ", casts shadows)" : ")");
                      });
   const auto unshadowed = std::count_if(scene.lights.begin(), scene.lights.end(),
                                         [](const Light& light) { return !light.casts_shadow; });
@@ -129,33 +125,27 @@ std::string cost_line(const Scene& scene, const SceneStats& s) {
 
 }  // namespace
 
-std::vector<Diagnostic> check_gltf(const std::string& path) {
-  try {
-    std::vector<std::string> light_names;
-    const Scene scene = gltf::load_scene(path, {}, &light_names);
-    const SceneStats totals = stats(scene);
-    std::vector<Diagnostic> out;
-    for (const std::string& line : {triangles_line(totals), size_line(scene, totals), meshes_line(scene),
-                                    materials_line(scene), textures_line(scene, totals), cameras_line(scene),
-                                    lights_line(scene, light_names), cost_line(scene, totals)}) {
-      Diagnostic d;
-      d.severity = Severity::note;
-      d.code = "S300";
-      d.message = line;
-      d.place.file = path;
-      out.push_back(std::move(d));
-    }
-    // What is not drawn as the author meant comes before what was merely filled in.
-    std::vector<Diagnostic> notes = scene.notes;
-    const auto is_loss = [](const Diagnostic& d) {
-      return d.code == "S101" || d.severity == Severity::warning;
-    };
-    std::stable_partition(notes.begin(), notes.end(), is_loss);
-    out.insert(out.end(), notes.begin(), notes.end());
-    return out;
-  } catch (const InputError& e) {
-    return e.diagnostics();
+std::vector<Diagnostic> check_scene(const Scene& scene, const std::string& path) {
+  const SceneStats totals = stats(scene);
+  std::vector<Diagnostic> out;
+  for (const std::string& line :
+       {triangles_line(totals), size_line(scene, totals), meshes_line(scene), materials_line(scene),
+        textures_line(scene, totals), cameras_line(scene), lights_line(scene), cost_line(scene, totals)}) {
+    Diagnostic d;
+    d.severity = Severity::note;
+    d.code = "S300";
+    d.message = line;
+    d.place.file = path;
+    out.push_back(std::move(d));
   }
+  // What is not drawn as the author meant comes before what was merely filled in.
+  std::vector<Diagnostic> notes = scene.notes;
+  const auto is_loss = [](const Diagnostic& d) {
+    return d.code == "S101" || d.severity == Severity::warning;
+  };
+  std::stable_partition(notes.begin(), notes.end(), is_loss);
+  out.insert(out.end(), notes.begin(), notes.end());
+  return out;
 }
 
 }  // namespace hwsim::pipeline

@@ -125,6 +125,7 @@ bool depths_run_together(const Camera& camera, const glm::vec3& bounds_min, cons
 
 Light default_sun() {
   Light sun;
+  sun.name = "default sun";
   sun.direction = glm::normalize(glm::vec3(0.4f, -1.0f, -0.35f));
   sun.casts_shadow = true;
   return sun;

@@ -116,6 +116,7 @@ enum class LightKind : std::uint8_t { directional, point, spot };
 /// docs/techniques/conventions.md#shading-models). Point and spot: the same at one meter, times 1/d^2
 /// windowed to zero at range_m.
 struct Light {
+  std::string name;  ///< the node's, else the light's own, else "nodes[7]"
   LightKind kind = LightKind::directional;
   glm::vec3 color{1.0f};  ///< color times intensity
   glm::vec3 position{0.0f};

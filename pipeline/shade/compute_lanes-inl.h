@@ -178,7 +178,7 @@ class ComputeLanes : public LaneFlow {
       for (int w = 0; w < image.words; ++w)
         image.texels[image.word_index(px[lane], py[lane], ps[lane], w)] =
             static_cast<std::uint32_t>(words[w][lane]);
-      note_store(*group_.resources, target, first_ + lane, image.word_index(px[lane], py[lane], ps[lane], 0));
+      note_store(*group_.resources, target, first_ + lane, {px[lane], py[lane], ps[lane]});
     }
     group_.counters->mem.storage_write_bytes +=
         static_cast<std::uint64_t>(__builtin_popcount(bits)) * info(image.format).bytes;

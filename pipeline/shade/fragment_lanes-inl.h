@@ -162,7 +162,7 @@ class FragmentLanes : public LaneFlow {
     const std::uint32_t bits = mask_bits(mask & live_ & active_);
     for (std::uint32_t rest = bits; rest != 0; rest &= rest - 1) {
       const int lane = __builtin_ctz(rest);
-      note_store(*batch_.resources, target, first_ + lane, image.word_index(px[lane], py[lane], ps[lane], 0));
+      note_store(*batch_.resources, target, first_ + lane, {px[lane], py[lane], ps[lane]});
       batch_.stores->push_back({batch_.store_order + static_cast<std::uint64_t>(first_ + lane),
                                 static_cast<std::uint32_t>(target),
                                 static_cast<std::uint32_t>(image.word_index(px[lane], py[lane], ps[lane], 0)),

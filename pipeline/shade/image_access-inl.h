@@ -17,24 +17,54 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
+/// Where the words of texels lie: in GpuImage::texels, those of `in_packed` in GpuImage::packed.
+struct TexelWords {
+  LaneI first, packed;
+  LaneM in_packed;
+  bool any_packed;
+
+  HWY_INLINE LaneI load(const GpuImage& image, int word) const {
+    const LaneI from_texels =
+        gather(reinterpret_cast<const std::int32_t*>(image.texels.data()), first + LaneI(word * kBlockLanes));
+    if (!any_packed) return from_texels;
+    const LaneI from_packed =
+        gather(reinterpret_cast<const std::int32_t*>(image.packed.words.data()), packed + LaneI(word * 4));
+    return select(in_packed, from_packed, from_texels);
+  }
+};
+
 /// The place of a texel in its image.
-HWY_INLINE LaneI texel_index(const GpuImage& image, LaneI x, LaneI y, LaneI sample) {
+HWY_INLINE TexelWords texel_words(const GpuImage& image, LaneI x, LaneI y, LaneI sample) {
   const LaneI cx = min(max(x, LaneI(0)), LaneI(image.width - 1)),
               cy = min(max(y, LaneI(0)), LaneI(image.height - 1));
   const LaneI block = shift_right<3>(cy) * LaneI(image.blocks_x) + shift_right<3>(cx);
   const LaneI lane = (cx & LaneI(1)) | shift_left<1>(cy & LaneI(1)) | shift_left<1>(cx & LaneI(2)) |
                      shift_left<2>(cy & LaneI(2)) | shift_left<2>(cx & LaneI(4)) |
                      shift_left<3>(cy & LaneI(4));
-  return block * LaneI(static_cast<std::int32_t>(image.tile_words())) +
-         shift_left<6>(sample * LaneI(image.words)) + lane;
+  const LaneM none = LaneI(0) > LaneI(0);
+  const LaneI words(image.words * kBlockLanes);
+  if (!image.first_samples_apart) {
+    const LaneI tile(static_cast<std::int32_t>(image.further_stride) * image.layers);
+    return {block * tile + sample * words + lane, LaneI(0), none, false};
+  }
+  const LaneI first = block * words + lane;
+  const LaneM is_first = sample == LaneI(0);
+  if (image.packed.quad_start.empty()) {
+    const LaneI further = LaneI(static_cast<std::int32_t>(image.further_begin)) +
+                          block * LaneI(static_cast<std::int32_t>(image.further_stride)) +
+                          (sample - LaneI(1)) * words + lane;
+    return {select(is_first, first, further), LaneI(0), none, false};
+  }
+  const LaneI start = gather(image.packed.quad_start.data(), shift_left<4>(block) + shift_right<2>(lane));
+  const LaneM in_packed = (sample > LaneI(0)) & (start > LaneI(PackedSamples::kOneColor));
+  const LaneI place = start + (sample - LaneI(1)) * LaneI(4 * image.words) + (lane & LaneI(3));
+  return {first, select(in_packed, place, LaneI(0)), in_packed, mask_bits(in_packed) != 0};
 }
 
 HWY_INLINE Vec4<LaneF> load_texel(const GpuImage& image, Format format, LaneI x, LaneI y, LaneI sample) {
-  const LaneI first = texel_index(image, x, y, sample);
+  const TexelWords at = texel_words(image, x, y, sample);
   LaneI words[4] = {LaneI(0), LaneI(0), LaneI(0), LaneI(0)};
-  const auto* texels = reinterpret_cast<const std::int32_t*>(image.texels.data());
-  for (int word = 0; word < image.words; ++word)
-    words[word] = gather(texels, first + LaneI(word * kBlockLanes));
+  for (int word = 0; word < image.words; ++word) words[word] = at.load(image, word);
   return decode_texel<LaneF, LaneI>(format, words, srgb_decode_table().data());
 }
 
@@ -60,18 +90,21 @@ HWY_INLINE void track_texels(const ResourceView& resources, int slot, LaneI x, L
 
 /// Channel `channel` of an integer format.
 HWY_INLINE LaneI load_texel_int(const GpuImage& image, int channel, LaneI x, LaneI y, LaneI sample) {
-  return gather(reinterpret_cast<const std::int32_t*>(image.texels.data()),
-                texel_index(image, x, y, sample) + LaneI(channel * kBlockLanes));
+  return texel_words(image, x, y, sample).load(image, channel);
 }
+
+struct TexelPlace {
+  int x, y;    ///< pixel
+  int sample;  ///< layer * samples + sample, for an image with layers
+};
 
 /// Notes a texel stored to the pass's target: those images are numbered behind the buffers; a sample's tile
 /// is as many lines as a texel has bytes.
-inline void note_store(const ResourceView& resources, int target, int lane, std::size_t first_word) {
+inline void note_store(const ResourceView& resources, int target, int lane, const TexelPlace& at) {
   const GpuImage& image = *resources.targets[static_cast<std::size_t>(target)];
   const auto bytes = static_cast<std::uint32_t>(info(image.format).bytes);
-  const auto texel = static_cast<std::uint32_t>(first_word % kBlockLanes);
-  const auto tile =
-      static_cast<std::uint32_t>(first_word / kBlockLanes / static_cast<std::size_t>(image.words));
+  const auto texel = static_cast<std::uint32_t>(lane_of(at.x & 7, at.y & 7));
+  const auto tile = static_cast<std::uint32_t>(image.block_index(at.x, at.y) * image.samples + at.sample);
   resources.tracker->use_if_sampled(
       lane / 4, ReuseStream::storage,
       buffer_line(kMaxBufferSlots + target, 0) + tile * bytes + texel * bytes / kLineBytes, 0, bytes);
