@@ -171,7 +171,10 @@ TechniqueChoice parse_technique(std::string_view text) {
     if (plus == std::string_view::npos) break;
     rest.remove_prefix(plus + 1);
   }
-  if (!has_base) choice.parts.push_back({find_technique("none")});
+  if (!has_base) {
+    const TechniqueInfo* none = find_technique("none");
+    choice.parts.push_back({none, none->defaults});
+  }
   for (std::size_t i = 0; i < choice.parts.size(); ++i)
     for (std::size_t j = i + 1; j < choice.parts.size(); ++j)
       check_pair(*choice.parts[i].info, *choice.parts[j].info, problems);
@@ -201,7 +204,7 @@ std::string technique_text(const TechniquePart& part, bool complete) {
 std::string technique_text(const TechniqueChoice& choice, bool complete) {
   std::string text;
   for (const TechniquePart& part : choice.parts) {
-    if (part.info->id == "none" && choice.parts.size() > 1) continue;
+    if (technique_text(part) == "none" && choice.parts.size() > 1) continue;
     text += (text.empty() ? "" : "+") + technique_text(part, complete);
   }
   return text;

@@ -27,7 +27,7 @@ struct TechniqueChoice {
 TechniqueChoice parse_technique(std::string_view text);
 
 /// As parse_technique reads it: the options that differ from their defaults; with `complete`, all of them.
-/// A base `none` beside other parts is left out.
+/// A base `none` with its defaults is left out beside other parts.
 std::string technique_text(const TechniqueChoice& choice, bool complete = false);
 std::string technique_text(const TechniquePart& part, bool complete = false);
 

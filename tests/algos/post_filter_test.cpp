@@ -43,6 +43,7 @@ TEST(PostFilters, AppliedInOrderAfterTheBase) {
   const algos::TechniqueChoice choice = algos::parse_technique("fxaa:preset=39+smaa+msaa4x");
   EXPECT_EQ(algos::technique_text(choice), "msaa4x+fxaa:preset=39+smaa");
   EXPECT_EQ(algos::technique_text(algos::parse_technique("none+fxaa")), "fxaa");
+  EXPECT_EQ(algos::technique_text(algos::parse_technique("none:prepass=on+fxaa")), "none:prepass=on+fxaa");
   const Picture p = shapes(96, 72);
   EXPECT_EQ(filter(p, "fxaa+smaa").picture, filter(filter(p, "fxaa").picture, "smaa").picture);
 }
