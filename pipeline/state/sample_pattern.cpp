@@ -84,8 +84,9 @@ std::vector<SamplePosition> coverage_positions(int samples, int positions) {
   return all;
 }
 
-// Layers shade at their pixels' centers, so a layer's samples lie around it: squeezed into one half, all layers
-// shaded up to half a pixel right of and below what they sampled, and textures moved by a quarter of a pixel.
+// Layers shade at their pixels' centers, so a layer's samples lie around it: squeezed into one half, all
+// layers shaded up to half a pixel right of and below what they sampled, and textures moved by a quarter of a
+// pixel.
 MulticastPattern multicast_pattern(int samples) {
   MulticastPattern pattern;
   for (const P p : k8) {

@@ -16,7 +16,7 @@ using namespace pipeline;
 namespace lanes = pipeline::HWY_NAMESPACE;
 
 /// Where surfaces coincide, the first drawn shows without a pre-pass, the last with one.
-constexpr std::size_t kCoincidentPixels = 330;  // 2 %: leaves that cross have samples of one 24-bit depth
+constexpr std::size_t kCoincidentPixels = 330;  // 2 %; 236 were measured in foliage at 32 samples
 constexpr int kWidth = 173, kHeight = 97;       // tiles that the frame's edge cuts
 
 FrameRequest lit(const std::string& scene, int lights, double range = 0.15) {

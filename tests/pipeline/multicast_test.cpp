@@ -139,7 +139,8 @@ TEST(Multicast, PatternsFillThePixelEvenly) {
   }
 }
 
-// A layer shades at its pixel's center. With samples beside it, textures and shadows would move against edges.
+// A layer shades at its pixel's center. With samples beside it, textures and shadows would move against
+// edges.
 TEST(Multicast, LayersShadeInTheMiddleOfWhatTheySample) {
   for (const int samples : {16, 32}) {
     const MulticastPattern pattern = multicast_pattern(samples);

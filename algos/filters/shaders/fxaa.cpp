@@ -228,16 +228,20 @@ const pipeline::FragmentProgram& fxaa_program(const FxaaPath& path) {
   using pipeline::FragmentBatch;
   using pipeline::HWY_NAMESPACE::describe_fragment_shader;
   static const pipeline::FragmentProgram loads[] = {
-      describe_fragment_shader<FxaaShader<false, false>>(
-          "fxaa", [](FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_loads)
-                                                        (b, u); }),
+      describe_fragment_shader<FxaaShader<false, false>>("fxaa",
+                                                         [](FragmentBatch& b, const void* u) {
+                                                           HWY_DYNAMIC_DISPATCH(run_loads)
+                                                           (b, u);
+                                                         }),
       describe_fragment_shader<FxaaShader<false, true>>("fxaa_discard", [](FragmentBatch& b, const void* u) {
         HWY_DYNAMIC_DISPATCH(run_loads_discard)(b, u);
       })};
   static const pipeline::FragmentProgram gathers[] = {
-      describe_fragment_shader<FxaaShader<true, false>>(
-          "fxaa_gather", [](FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_gathers)
-                                                               (b, u); }),
+      describe_fragment_shader<FxaaShader<true, false>>("fxaa_gather",
+                                                        [](FragmentBatch& b, const void* u) {
+                                                          HWY_DYNAMIC_DISPATCH(run_gathers)
+                                                          (b, u);
+                                                        }),
       describe_fragment_shader<FxaaShader<true, true>>("fxaa_gather_discard",
                                                        [](FragmentBatch& b, const void* u) {
                                                          HWY_DYNAMIC_DISPATCH(run_gathers_discard)(b, u);

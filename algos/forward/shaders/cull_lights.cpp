@@ -198,9 +198,11 @@ namespace hwsim::algos {
 HWY_EXPORT(run_cull);
 
 const pipeline::ComputeProgram& cull_lights_program() {
-  static const pipeline::ComputeProgram program = HWY_NAMESPACE::describe_cull(
-      [](pipeline::GroupBatch& g, const void* u) { HWY_DYNAMIC_DISPATCH(run_cull)
-                                                   (g, u); });
+  static const pipeline::ComputeProgram program =
+      HWY_NAMESPACE::describe_cull([](pipeline::GroupBatch& g, const void* u) {
+        HWY_DYNAMIC_DISPATCH(run_cull)
+        (g, u);
+      });
   return program;
 }
 

@@ -28,8 +28,7 @@ class ListedLights {
 
   /// Adds what the surface reflects, light by light in the order of the list.
   void add(const Surface& surface, M lit, Vec3& sum) {
-    const I tile =
-        shift_right<4>(s_.pixel_y()) * I(u_.grid.columns()) + shift_right<4>(s_.pixel_x());
+    const I tile = shift_right<4>(s_.pixel_y()) * I(u_.grid.columns()) + shift_right<4>(s_.pixel_x());
     const I list = tile * I(u_.grid.list_words());
     const I count = s_.load_buffer(kListsBuffer, list, lit);
     s_.loop_each(lanes::kPointBlock, count, lit, [&](int i, M listed) HWY_ATTR {
@@ -112,8 +111,10 @@ pipeline::FragmentProgram describe_listed(bool full, bool extended) {
   pipeline::FragmentProgram program =
       pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::ListedForwardShader>(
           "listed_forward",
-          [](pipeline::FragmentBatch& b, const void* u) { HWY_DYNAMIC_DISPATCH(run_listed)
-                                                          (b, u); },
+          [](pipeline::FragmentBatch& b, const void* u) {
+            HWY_DYNAMIC_DISPATCH(run_listed)
+            (b, u);
+          },
           uniforms);
   program.varying_scalars = full ? pipeline::SurfaceVaryings::kFull : pipeline::SurfaceVaryings::kBasic;
   return program;
