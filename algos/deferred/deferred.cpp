@@ -17,17 +17,33 @@ struct GBuffer {
   const GBufferLayout* layout = nullptr;
   std::vector<ImageId> attachments;
   ImageId depth, lit;
-  int samples = 1;
+  int samples = 1;           ///< samples of a layer
+  MulticastPattern pattern;  ///< layers of eight samples, or none
   bool centroid = true, alpha_to_coverage = false;
+
+  int layers() const { return std::max(1, static_cast<int>(pattern.viewports.size())); }
 };
 
-GBuffer add_gbuffer(FrameGraph& graph, const DeferredOptions& options) {
+ForwardTarget lit_target(const FrameGraph& graph, const GBuffer& g) {
+  ForwardTarget target;
+  target.color = g.lit;
+  target.depth = g.depth;
+  target.width = graph.width();
+  target.height = graph.height();
+  target.samples = g.samples;
+  target.centroid = g.centroid;
+  target.layers = g.pattern;
+  return target;
+}
+
+GBuffer add_gbuffer(FrameGraph& graph, const FrameRequest& request, const DeferredOptions& options) {
   GBuffer g;
   g.layout = &gbuffer_layouts()[static_cast<std::size_t>(options.layout)];
-  g.samples = options.samples;
+  g.pattern = multicast_layers(request, options.samples, options.emulate);
+  g.samples = options.samples / g.layers();
   g.centroid = options.centroid;
   const auto image = [&](std::string_view name, Format format) {
-    return graph.add_image({std::string(name), format, graph.width(), graph.height(), g.samples});
+    return graph.add_image({std::string(name), format, graph.width(), graph.height(), g.samples, g.layers()});
   };
   for (const GBufferAttachment& attachment : g.layout->attachments)
     g.attachments.push_back(image(attachment.name, attachment.format));
@@ -39,7 +55,10 @@ GBuffer add_gbuffer(FrameGraph& graph, const DeferredOptions& options) {
 DrawBatch gbuffer_batch(const FrameParts& parts, const GBuffer& g, const std::vector<DrawCall>& draws,
                         bool alpha_test) {
   DrawBatch batch = mesh_batch(parts, draws, surface_vertex_program(parts));
-  batch.state.raster.centroid = g.centroid;
+  ForwardTarget target;
+  target.centroid = g.centroid;
+  target.layers = g.pattern;
+  batch.state = opaque_state(target);
   batch.fragment =
       &gbuffer_program(g.layout->encoding, parts.full_varyings, alpha_test, parts.lighting.extended);
   batch.fragment_uniforms = std::make_shared<GBufferUniforms>(
@@ -55,6 +74,7 @@ void add_gbuffer_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer&
   graph.add_clear("clear", std::move(cleared));
   Pass& pass = graph.add_pass("gbuffer", PassKind::draw);
   pass.samples = g.samples;
+  pass.viewports = g.pattern.viewports;
   pass.color = g.attachments;
   pass.depth = g.depth;
   pass.batches.push_back(gbuffer_batch(parts, g, parts.draws.opaque, false));
@@ -84,7 +104,10 @@ std::shared_ptr<DeferredUniforms> make_uniforms(const FrameGraph& graph, const F
   u->width = graph.width();
   u->height = graph.height();
   u->samples = g.samples;
-  std::ranges::copy(standard_sample_positions(g.samples), u->positions.begin());
+  if (g.layers() > 1)
+    std::ranges::copy(effective_positions(g.pattern), u->positions.begin());
+  else
+    std::ranges::copy(standard_sample_positions(g.samples), u->positions.begin());
   return u;
 }
 
@@ -93,10 +116,17 @@ void bind_gbuffer(Pass& pass, const FrameParts& parts, const GBuffer& g) {
   if (parts.shadow_map) pass.sampled.push_back(parts.shadow_map);
 }
 
+/// A full-screen pass in each layer, with the samples where the G-buffer has them.
+void cover_layers(Pass& pass, const GBuffer& g) {
+  pass.samples = g.samples;
+  pass.viewports = g.pattern.viewports;
+  pass.state.raster.sample_positions = g.pattern.positions;
+}
+
 Pass& add_light_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g, const std::string& name,
                      std::shared_ptr<const void> uniforms) {
   Pass& pass = graph.add_pass(name, PassKind::full_screen);
-  pass.samples = g.samples;
+  cover_layers(pass, g);
   pass.color = {g.lit};
   pass.fragment = &deferred_light_program(g.layout->encoding, parts.lighting.extended);
   pass.uniforms = std::move(uniforms);
@@ -115,7 +145,7 @@ void select_by_stencil(Pass& pass, const GBuffer& g, std::uint8_t value) {
 void add_classify_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
                        std::shared_ptr<const void> uniforms) {
   Pass& pass = graph.add_pass("classify", PassKind::full_screen);
-  pass.samples = g.samples;
+  cover_layers(pass, g);
   pass.depth = g.depth;
   pass.depth_read_only = true;
   pass.state.stencil.test = true;
@@ -133,7 +163,7 @@ void add_classify_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer
 void add_tile_passes(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
                      std::shared_ptr<const void> uniforms) {
   const ImageId samples =
-      graph.add_image({"lit_samples", g.layout->lit, graph.width(), graph.height(), g.samples});
+      graph.add_image({"lit_samples", g.layout->lit, graph.width(), graph.height(), g.samples, g.layers()});
   Pass& pass =
       add_frame_compute(graph, "light_tiles", tile_light_program(g.layout->encoding, parts.lighting.extended),
                         std::move(uniforms));
@@ -141,19 +171,18 @@ void add_tile_passes(FrameGraph& graph, const FrameParts& parts, const GBuffer& 
   bind_gbuffer(pass, parts, g);
   const ImageId output = add_output(graph);
   add_full_screen(graph, "resolve", {samples}, output, merge_program(),
-                  std::make_shared<MergeUniforms>(MergeUniforms{g.samples}));
-  add_over_output(graph, parts, output, g.depth, {}, true);
+                  std::make_shared<MergeUniforms>(MergeUniforms{g.samples * g.layers()}));
+  add_over_output(graph, parts, output, g.depth, g.pattern, true);
 }
 
 void finish(FrameGraph& graph, const FrameParts& parts, const GBuffer& g) {
-  ForwardTarget target;
-  target.color = g.lit;
-  target.depth = g.depth;
-  target.width = graph.width();
-  target.height = graph.height();
-  target.samples = g.samples;
-  add_blended(graph, parts, "", target);
+  add_blended(graph, parts, "", lit_target(graph, g));
   const ImageId output = add_output(graph);
+  if (g.layers() > 1) {
+    add_full_screen(graph, "resolve", {g.lit}, output, merge_program(),
+                    std::make_shared<MergeUniforms>(MergeUniforms{g.samples * g.layers()}));
+    return;
+  }
   if (g.samples > 1) {
     graph.add_resolve("resolve", g.lit, output);
     return;
@@ -174,7 +203,7 @@ void check_alpha_to_coverage(const GBuffer& g) {
 FrameGraph build_deferred(const FrameRequest& request, const DeferredOptions& options) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_gbuffer_frame(graph, request);
-  const GBuffer g = add_gbuffer(graph, options);
+  const GBuffer g = add_gbuffer(graph, request, options);
   add_gbuffer_pass(graph, parts, g);
   Pass& light = add_light_pass(graph, parts, g, "light", make_uniforms(graph, parts, g));
   light.state.raster.sample_rate = g.samples > 1;
@@ -185,7 +214,7 @@ FrameGraph build_deferred(const FrameRequest& request, const DeferredOptions& op
 FrameGraph build_simple_complex(const FrameRequest& request, const SimpleComplexOptions& options) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_gbuffer_frame(graph, request);
-  GBuffer g = add_gbuffer(graph, options.gbuffer);
+  GBuffer g = add_gbuffer(graph, request, options.gbuffer);
   g.alpha_to_coverage = options.alpha_to_coverage;
   check_alpha_to_coverage(g);
   add_gbuffer_pass(graph, parts, g);
@@ -194,6 +223,7 @@ FrameGraph build_simple_complex(const FrameRequest& request, const SimpleComplex
   uniforms->z_scale = static_cast<float>(options.z_scale);
   uniforms->compare_all = options.compare_all;
   if (options.lighting == DeferredLighting::compute_tiles) {
+    uniforms->samples = options.gbuffer.samples;  // tiles light the layers' samples together
     add_tile_passes(graph, parts, g, uniforms);
     return graph;
   }
@@ -210,6 +240,8 @@ void describe_gbuffer(OptionList& list, DeferredOptions& o, int least_samples) {
   list.whole("samples", o.samples, {least_samples, 32}, "samples a pixel: a power of two");
   list.choice("layout", o.layout, kLayoutChoices, "what the G-buffer holds of a sample");
   describe_centroid(list, o.centroid);
+  list.choice("emulate", o.emulate, kEmulateChoices,
+              "beyond 8 samples: layers of 8, by viewport multicast, or native samples");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // Options of deferred shading.
 #include <cstdint>
 
+#include "algos/base/frame_parts.h"
 #include "algos/base/options.h"
 
 namespace hwsim::algos {
@@ -13,6 +14,7 @@ struct DeferredOptions {
   int samples = 8;
   DeferredLayout layout = DeferredLayout::gb_lauritzen;
   bool centroid = true;
+  Emulate emulate = Emulate::automatic;
 };
 void describe(OptionList& list, DeferredOptions& o);
 

@@ -275,7 +275,7 @@ class BinDepth {
   /// A full-screen triangle lies in one depth, which is tested before its program runs, unless the program
   /// gives each fragment a depth of its own. One sample a pixel.
   bool test_full_screen_depth(int x, int y, SampleMasks& masks, PassCounters& n) {
-    const int block = c_.depth->block_index(x, y);
+    const int block = c_.depth->block_index(x, y, layer_);
     const auto index = static_cast<std::size_t>(block);
     const Compare compare = w_.state->depth.compare;
     const std::uint32_t z = depth_bits(c_.pass->full_screen_depth, c_.depth_scale);

@@ -296,7 +296,8 @@ void run_bin_target(const PassContext& context, const Segment& segment, int bin,
     BinRunner(context, bin, layer, worker).run(segment, bin);
 }
 void run_full_screen_bin_target(const PassContext& context, int bin, BinWorker& worker) {
-  BinRunner(context, bin, 0, worker).run_full_screen();
+  for (int layer = 0; layer < static_cast<int>(context.viewports.size()); ++layer)
+    BinRunner(context, bin, layer, worker).run_full_screen();
 }
 
 }  // namespace hwsim::pipeline::HWY_NAMESPACE

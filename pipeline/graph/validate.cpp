@@ -150,10 +150,10 @@ class Validator {
     const bool far = std::any_of(pass.viewports.begin(), pass.viewports.end(), [](ViewportShift shift) {
       return std::max(std::abs(shift.x), std::abs(shift.y)) > kSubpixelUnits;
     });
-    if (pass.kind != PassKind::draw || pass.viewports.size() > kMaxViewports || far)
+    if (!pass.targets.empty() || pass.compute != nullptr || pass.viewports.size() > kMaxViewports || far)
       tell("G011",
            "pass `" + pass.name + "` has " + std::to_string(pass.viewports.size()) +
-               " viewports: draws may have up to 16, shifted by up to one pixel",
+               " viewports: draws may have up to 16, shifted by up to one pixel, and store to no image",
            "draw the layers in passes of their own");
   }
 

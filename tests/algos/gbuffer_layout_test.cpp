@@ -149,6 +149,44 @@ TEST(SimpleComplex, TilesAreResolvedFromTheirBuffer) {
     ASSERT_LE(code_difference(by_tiles.pixels[i], by_stencil.pixels[i]), 1.5) << i;
 }
 
+/// 32 samples on a GPU that has as many, or eight and multicast.
+pipeline::Emulation of_32_samples(const std::string& technique, int native) {
+  algos::FrameRequest request;
+  request.scene = generated_scene("dragon");
+  request.width_px = 96;
+  request.height_px = 54;
+  request.features = every_feature(native);
+  pipeline::EmulationOptions options;
+  options.jobs = 2;
+  const auto graph = algos::build_frame(algos::parse_technique(technique + "samples=32"), request);
+  return pipeline::emulate(graph, request.features, FunctionalConfig{}, options);
+}
+
+// Four layers of eight samples have the picture of 32 native ones; vertices are shaded once. With stencil
+// each layer is classified by itself, so that a simple pixel is lit once a layer; tiles see all samples.
+TEST(SimpleComplex, LayersOfEightSamplesAreNativeSamples) {
+  const std::string reference = "deferred_simple_complex:z_scale=0,normal_dot_min=1,";
+  for (const std::string& technique :
+       {std::string("deferred:"), reference, reference + "lighting=compute,"}) {
+    const pipeline::Emulation native = of_32_samples(technique, 32), layers = of_32_samples(technique, 8);
+    double most = 0.0;
+    for (std::size_t i = 0; i < native.color.pixels.size(); ++i)
+      most = std::max(most, code_difference(native.color.pixels[i], layers.color.pixels[i]));
+    EXPECT_LE(most, 1.5) << technique;
+    const PassCounters a = total(native.trace), b = total(layers.trace);
+    // The layers are averaged by one more triangle.
+    EXPECT_LE(b.stats.vertex_shader_invocations, a.stats.vertex_shader_invocations + 3) << technique;
+    const std::uint64_t lit_native = a.technique[algos::BaseCounters::lit_samples],
+                        lit_layers = b.technique[algos::BaseCounters::lit_samples];
+    if (technique == reference) {
+      EXPECT_GT(lit_layers, lit_native);
+      EXPECT_LE(lit_layers, lit_native + 3u * 96u * 54u);
+    } else {
+      EXPECT_EQ(lit_layers, lit_native) << technique;
+    }
+  }
+}
+
 // Shaded = pixels + (N - 1) complex ones; stricter criteria find more of them.
 TEST(SimpleComplex, CriteriaDecideWhatIsShaded) {
   const auto scene = generated_scene("sponza_hall");

@@ -184,12 +184,12 @@ typename S::F view_z(S& s, const DeferredUniforms& u, typename S::I x, typename 
   }
 }
 
-/// How far view z of sample 0's surface goes over one pixel right and one down. Without stored gradients: of
-/// the plane through the sample, met by the neighbors' rays (the position-difference form of
+/// How far view z of sample `base`'s surface goes over one pixel right and one down. Without stored
+/// gradients: of the plane through the sample, met by the neighbors' rays (the position-difference form of
 /// docs/techniques/deferred.md#simple-and-complex).
 template <GBufferEncoding kEncoding, class S, class F>
 F depth_span(S& s, const DeferredUniforms& u, typename S::I x, typename S::I y, const lanes::Vec3<F>& normal,
-             F z) {
+             F z, int base) {
   using I = typename S::I;
   if constexpr (kEncoding == GBufferEncoding::compact) {
     const glm::mat4 &v = u.view_from_world, &m = u.view_from_clip;
@@ -212,7 +212,7 @@ F depth_span(S& s, const DeferredUniforms& u, typename S::I x, typename S::I y, 
     return (abs(n.x) * abs(step_x) + abs(n.y) * abs(step_y)) * slope;
   } else {
     constexpr int kGradientSlot = kEncoding == GBufferEncoding::record ? 4 : 2;
-    const auto gradient = s.load_image(kGradientSlot, x, y, I(0));
+    const auto gradient = s.load_image(kGradientSlot, x, y, I(base));
     return abs(gradient.x) + abs(gradient.y);
   }
 }
@@ -222,12 +222,12 @@ auto differs(const lanes::Vec4<F>& a, const lanes::Vec4<F>& b) {
   return (abs(a.x - b.x) + abs(a.y - b.y) + abs(a.z - b.z) + abs(a.w - b.w)) > F(0.0f);
 }
 
-/// Whether material attributes of a sample are not those of sample 0.
+/// Whether material attributes of a sample are not those of sample `base`.
 template <GBufferEncoding kEncoding, class S>
-typename S::M material_differs(S& s, typename S::I x, typename S::I y, typename S::I sample) {
-  using I = typename S::I;
+typename S::M material_differs(S& s, typename S::I x, typename S::I y, typename S::I base,
+                               typename S::I sample) {
   const auto at = [&](int slot) HWY_ATTR {
-    const auto first = s.load_image(slot, x, y, I(0)), own = s.load_image(slot, x, y, sample);
+    const auto first = s.load_image(slot, x, y, base), own = s.load_image(slot, x, y, sample);
     return differs(own, first);
   };
   constexpr int kSlot = kEncoding == GBufferEncoding::gradients ? 0
@@ -237,27 +237,29 @@ typename S::M material_differs(S& s, typename S::I x, typename S::I y, typename 
   return first | second;
 }
 
-/// Lauritzen 2010: a sample whose depth or normal departs from sample 0's. Uses two blocks from `loop_block`
-/// on.
+/// Lauritzen 2010: a sample whose depth or normal departs from that of sample `base`, the first of
+/// `u.samples`. Uses two blocks from `loop_block` on.
 template <GBufferEncoding kEncoding, class S>
-typename S::M is_complex(S& s, const DeferredUniforms& u, int loop_block, typename S::I x, typename S::I y) {
+typename S::M is_complex(S& s, const DeferredUniforms& u, int loop_block, typename S::I x, typename S::I y,
+                         int base = 0) {
   using F = typename S::F;
   using I = typename S::I;
   constexpr int kNormalSlot = kEncoding == GBufferEncoding::record ? 1 : 0;
-  const auto first = s.load_image(kNormalSlot, x, y, I(0));
+  const auto first = s.load_image(kNormalSlot, x, y, I(base));
   const auto n0 = decode_normal(first.x, first.y);
   typename S::M covered;
-  const F z0 = view_z<kEncoding>(s, u, x, y, I(0), covered);
-  const F span = depth_span<kEncoding>(s, u, x, y, n0, z0) * F(u.z_scale);
+  const F z0 = view_z<kEncoding>(s, u, x, y, I(base), covered);
+  const F span = depth_span<kEncoding>(s, u, x, y, n0, z0, base) * F(u.z_scale);
   auto complex = F(1.0f) < F(0.0f);
   s.loop(loop_block, u.samples - 1, s.valid(), [&](int i) HWY_ATTR {
-    const auto shape = s.load_image(kNormalSlot, x, y, I(i + 1));
+    const auto shape = s.load_image(kNormalSlot, x, y, I(base + i + 1));
     typename S::M other;
-    const F dz = abs(view_z<kEncoding>(s, u, x, y, I(i + 1), other) - z0);
+    const F dz = abs(view_z<kEncoding>(s, u, x, y, I(base + i + 1), other) - z0);
     const F cosine = dot(decode_normal(shape.x, shape.y), n0);
     complex = complex | (dz > span) | (cosine < F(u.normal_dot_min));
-    s.uniform_branch(loop_block + 1, u.compare_all,
-                     [&]() HWY_ATTR { complex = complex | material_differs<kEncoding>(s, x, y, I(i + 1)); });
+    s.uniform_branch(loop_block + 1, u.compare_all, [&]() HWY_ATTR {
+      complex = complex | material_differs<kEncoding>(s, x, y, I(base), I(base + i + 1));
+    });
   });
   return complex;
 }

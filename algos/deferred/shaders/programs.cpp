@@ -1,5 +1,7 @@
 #include "algos/deferred/shaders/programs.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "algos/deferred/shaders/programs.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -42,7 +44,7 @@ struct ClassifyShader {
   using Uniforms = DeferredUniforms;
   template <class S>
   static void run(S& s, const DeferredUniforms& u) {
-    s.discard(!is_complex<kEncoding>(s, u, kClassifyBlock, s.pixel_x(), s.pixel_y()));
+    s.discard(!is_complex<kEncoding>(s, u, kClassifyBlock, s.pixel_x(), s.pixel_y(), s.layer() * u.samples));
   }
 };
 
@@ -53,7 +55,7 @@ struct DeferredLightShader {
   static void run(S& s, const DeferredUniforms& u) {
     using F = typename S::F;
     using I = typename S::I;
-    const int index = s.sample_index() < 0 ? 0 : s.sample_index();
+    const int index = s.layer() * u.samples + std::max(0, s.sample_index());
     const pipeline::SamplePosition p = u.positions[static_cast<std::size_t>(index)];
     const auto sample =
         read_gbuffer<kEncoding>(s, u, s.pixel_x(), s.pixel_y(), I(index),
