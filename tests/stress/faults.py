@@ -20,7 +20,10 @@ import tempfile
 CHANGES = ["write", "pwrite64", "rename", "renameat2", "mkdir", "link", "fsync", "fdatasync", "ftruncate", "fchmod"]
 VIEW = ["grass:blades=10", "-g", "gtx980", "--resolution", "16x16"]
 SWEEP = ["sweep", *VIEW, "-t", "none,msaa4x", "--db", "s.sqlite", "--resume", "--vary"]
+FIT = ["fit", "--paper", "axaa", "--starts", "1", "--out"]
 STATUSES = {0, 1, 3, 5}
+CONFIGS = pathlib.Path(__file__).resolve().parents[2] / "configs"
+FITTED = 4  # lines of the parameters that "fit" keeps: one paper has too few values for all
 
 
 class Scenario:
@@ -50,6 +53,8 @@ SCENARIOS = {
     "rank": Scenario(["rank", *VIEW, "-t", "none,msaa4x", "--reference", "1", "--out", "new"], [[*RUN, "old"]],
                      ["rank", *VIEW, "-t", "none,msaa4x", "--reference", "1", "--out", "new", "--force"], ["old"],
                      ["new/ranking.csv"]),
+    "fit": Scenario([*FIT, "new"], [[*FIT, "old"]], [*FIT, "new", "--force"], ["old"],
+                    ["new/calibration.json", "new/hd4600.toml"]),
     "prune": Scenario(["cache", "prune", "--all"], [[*RUN, "old"]], keeps=["old"]),
 }
 
@@ -77,10 +82,14 @@ class Bench:
         base = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
         self.root = pathlib.Path(tempfile.mkdtemp(prefix="hwsim_stress_", dir=base))
         self.work, self.template = self.root / "work", self.root / "template"
+        self.configs = self.root / "configs"
+        shutil.copytree(CONFIGS, self.configs)
+        parameters = self.configs / "calibration" / "parameters.csv"
+        parameters.write_text("".join(parameters.read_text().splitlines(keepends=True)[:FITTED]))
         self.faults = self.failures = 0
 
     def hwsim(self, words, inject=(), log=None):
-        environment = {**os.environ, "HWSIM_CACHE": "cache", "HWSIM_JOBS": "1"}
+        environment = {**os.environ, "HWSIM_CACHE": "cache", "HWSIM_JOBS": "1", "HWSIM_CONFIG_DIR": str(self.configs)}
         trace = ["strace", "-f", "-qq", "-o", str(log or self.root / "strace.log"), *inject] if inject or log else []
         try:
             return subprocess.run([*trace, self.program, *words], cwd=self.work, env=environment, capture_output=True,
@@ -171,7 +180,7 @@ class Bench:
 
 def start_together(bench, commands):
     """Starts all commands at once in the bench's folder; returns how they ended."""
-    environment = {**os.environ, "HWSIM_CACHE": "cache", "HWSIM_JOBS": "1"}
+    environment = {**os.environ, "HWSIM_CACHE": "cache", "HWSIM_JOBS": "1", "HWSIM_CONFIG_DIR": str(bench.configs)}
     running = [subprocess.Popen([bench.program, *words], cwd=bench.work, env=environment, stdout=subprocess.PIPE,
                                 stderr=subprocess.PIPE) for words in commands]
     ends = [process.communicate(timeout=300) for process in running]
@@ -208,7 +217,7 @@ def main():
     parser.add_argument("program")
     parser.add_argument("--every", type=int, default=1, help="kill at every N-th call only")
     parser.add_argument("scenarios", nargs="*", default=list(SCENARIOS))
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     results = [Bench(options.program, name, options.every).run() for name in options.scenarios]
     results.append(run_beside_each_other(options.program))
     faults, failures = (sum(column) for column in zip(*results))
