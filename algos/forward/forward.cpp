@@ -144,7 +144,8 @@ FrameGraph build_many_samples(const FrameRequest& request, const ManySamplesOpti
 }
 
 FrameGraph build_csaa(const FrameRequest& request, const CsaaOptions& options) {
-  constexpr CoverageMode kModes[] = {{4, 8}, {8, 8}, {4, 16}, {8, 16}};  // in the order of CsaaMode
+  // In the order of CsaaMode.
+  constexpr CoverageMode kModes[] = {{4, 8}, {8, 8}, {4, 16}, {8, 16}, {8, 32}};
   return build_coverage(request, options.coverage, kModes[static_cast<std::size_t>(options.mode)]);
 }
 FrameGraph build_eqaa(const FrameRequest& request, const EqaaOptions& options) {
@@ -183,7 +184,8 @@ void describe(OptionList& list, ManySamplesOptions& o) {
 }
 
 void describe(OptionList& list, CsaaOptions& o) {
-  list.choice("mode", o.mode, "8x|8xq|16x|16xq", "color and coverage samples: 4/8, 8/8, 4/16 or 8/16");
+  list.choice("mode", o.mode, "8x|8xq|16x|16xq|32x",
+              "color and coverage samples: 4/8, 8/8, 4/16, 8/16 or 8/32");
   describe_coverage(list, o.coverage);
 }
 

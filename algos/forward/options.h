@@ -36,7 +36,7 @@ struct CoverageOptions {
   bool centroid = true;
   OrphanPositions orphans = OrphanPositions::follow;
 };
-enum class CsaaMode : std::uint8_t { x8, x8q, x16, x16q };
+enum class CsaaMode : std::uint8_t { x8, x8q, x16, x16q, x32 };
 struct CsaaOptions {
   CsaaMode mode = CsaaMode::x16;
   CoverageOptions coverage;

@@ -8,7 +8,7 @@ namespace hwsim {
 inline GpuFeatures every_feature(int native_msaa_max) {
   GpuFeatures features;
   features.native_msaa_max = native_msaa_max;
-  features.coverage_samples_max = 16;
+  features.coverage_samples_max = 32;
   features.target_independent_raster = true;
   features.post_depth_coverage = true;
   features.coverage_override = true;

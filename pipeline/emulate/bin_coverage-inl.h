@@ -1,4 +1,6 @@
 // Coverage maps of a screen bin (memory/coverage_map.h). Per-target include guard.
+#include <bit>
+
 #include "pipeline/emulate/bin_depth-inl.h"
 #include "pipeline/graph/frame_graph.h"
 #include "pipeline/memory/coverage_map.h"
@@ -87,8 +89,10 @@ class BinCoverage : protected BinDepth {
     const auto tile = static_cast<std::size_t>(block);
     const std::uint64_t bit = std::uint64_t{1} << lane;
     const bool was_whole = (image.coverage_whole[tile] & bit) != 0;
-    std::uint64_t& stored = image.coverage_map[tile * kBlockLanes + static_cast<std::size_t>(lane)];
-    const CoverageWord before = was_whole ? CoverageWord() : CoverageWord(stored);
+    const std::size_t words = coverage_words(positions_);
+    std::uint64_t* stored =
+        image.coverage_map.data() + (tile * kBlockLanes + static_cast<std::size_t>(lane)) * words;
+    const CoverageWord before = was_whole ? CoverageWord() : CoverageWord(stored, words);
     const int x = c_.depth->block_x(block) + lane_x(lane), y = c_.depth->block_y(block) + lane_y(lane);
     const auto wins = [&](int position, int sample) HWY_ATTR {
       const std::uint32_t z =
@@ -96,7 +100,7 @@ class BinCoverage : protected BinDepth {
                          c_.coverage_positions[static_cast<std::size_t>(position)], c_.depth_scale);
       return depth_passes(w_.state->depth.compare, z, stored_depth(*c_.depth, block, sample, lane));
     };
-    const bool everywhere = passed == (1u << samples_) - 1 && covered == (1u << positions_) - 1;
+    const bool everywhere = std::popcount(passed) == samples_ && std::popcount(covered) == positions_;
     if (everywhere) {
       image.coverage_whole[tile] |= bit;
       count_map_bytes(0, was_whole ? 0 : 1);
@@ -105,9 +109,9 @@ class BinCoverage : protected BinDepth {
     const CoverageWord after =
         passed == 0 ? hide_positions(before, *layout_, covered, wins)
                     : insert_fragment(before, *layout_, passed, covered, c_.pass->drop_orphans, wins);
-    count_map_bytes(1, after.word() != before.word() ? 1 : 0);
+    count_map_bytes(1, after == before ? 0 : 1);
     image.coverage_whole[tile] &= ~bit;
-    stored = after.word();
+    after.store(stored, words);
   }
 
   const CoverageLayout* layout_;  ///< null without a map

@@ -43,11 +43,13 @@ HWY_INLINE Vec4<LaneF> sum_samples(const GpuImage& from, int block, int first) {
 HWY_INLINE Vec4<LaneF> mean_of_positions(const GpuImage& from, int block, int first) {
   HWY_ALIGN float weight[kMaxSamples][kVectorLanes] = {};
   const CoverageLayout& layout = coverage_layout(from.samples, from.coverage_samples);
+  const std::size_t words_of_map = coverage_words(from.coverage_samples);
   const std::uint64_t whole = from.coverage_whole[static_cast<std::size_t>(block)];
   for (int i = 0; i < kVectorLanes; ++i) {
     const auto lane = static_cast<std::size_t>(first + i);
-    const std::uint64_t stored = from.coverage_map[static_cast<std::size_t>(block) * kBlockLanes + lane];
-    const CoverageWord map = (whole >> lane & 1) != 0 ? CoverageWord() : CoverageWord(stored);
+    const std::uint64_t* stored =
+        from.coverage_map.data() + (static_cast<std::size_t>(block) * kBlockLanes + lane) * words_of_map;
+    const CoverageWord map = (whole >> lane & 1) != 0 ? CoverageWord() : CoverageWord(stored, words_of_map);
     for (int q = 0; q < from.coverage_samples; ++q) {
       const std::uint32_t sample = q < from.samples ? static_cast<std::uint32_t>(q) : layout.shown_at(map, q);
       weight[sample][i] += 1.0f;

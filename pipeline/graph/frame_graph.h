@@ -115,7 +115,7 @@ struct Pass {
   ImageId depth;
   bool depth_read_only = false;
   std::vector<ImageId> sampled;   ///< images that shaders read, in the order of their slots
-  std::vector<Format> views;      ///< as which shaders read `sampled`; missing or none: the image's format
+  std::vector<Format> views;      ///< as which shaders read `sampled`; none: its format, and no map at all
   std::vector<BufferId> storage;  ///< buffers that shaders read or write, in the order of their slots
   std::uint64_t storage_written = 0;  ///< bit i: storage[i] is written
   /// Compute: one of `sampled`, a depth image whose tiles the program may read as the planes that they are

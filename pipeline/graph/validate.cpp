@@ -128,7 +128,7 @@ class Validator {
       tell("G005",
            "pass `" + pass.name + "` reads image " + text(graph_.image(id)) + " before any pass wrote it",
            "clear it, or order the passes by what they read");
-    if (graph_.image(id).coverage_samples != 0 && pass.kind != PassKind::resolve)
+    if (graph_.image(id).coverage_samples != 0 && pass.kind != PassKind::resolve && !shows_samples(pass, id))
       tell("G009",
            "pass `" + pass.name + "` reads image " + text(graph_.image(id)) + ", which has a coverage map",
            "only a resolve reads the map");

@@ -25,10 +25,12 @@ std::string text(const ImageDesc& image) {
 
 std::vector<Diagnostic> check_coverage_samples(const ImageDesc& image, const GpuFeatures& features) {
   const int n = image.coverage_samples, k = image.samples;
-  const bool pattern = (k == 2 && n == 4) || (k == 4 && (n == 8 || n == 16)) || (k == 8 && n == 16);
+  const bool pattern =
+      (k == 2 && n == 4) || (k == 4 && (n == 8 || n == 16)) || (k == 8 && (n == 16 || n == 32));
   if (!pattern)
     return {problem("G002", "image " + text(image) + " has " + std::to_string(n) + " coverage samples for " +
-                                std::to_string(k) + " color samples: 4 for 2, 8 for 4, 16 for 4 or 8")};
+                                std::to_string(k) +
+                                " color samples: 4 for 2, 8 for 4, 16 for 4 or 8, 32 for 8")};
   if (n <= features.coverage_samples_max) return {};
   const std::string has =
       features.coverage_samples_max == 0 ? "none" : std::to_string(features.coverage_samples_max);
@@ -57,6 +59,12 @@ std::vector<Diagnostic> check_coverage_pass(const FrameGraph& graph, const Pass&
             "draw into one color and one depth image",
         "no sample-rate shading, masks, own positions, conservative raster or several viewports"));
   return found;
+}
+
+bool shows_samples(const Pass& pass, ImageId id) {
+  for (std::size_t slot = 0; slot < std::min(pass.sampled.size(), pass.views.size()); ++slot)
+    if (pass.sampled[slot] == id) return pass.views[slot] != Format::none;
+  return false;
 }
 
 }  // namespace hwsim::pipeline

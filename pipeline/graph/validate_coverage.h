@@ -18,4 +18,7 @@ std::vector<Diagnostic> check_coverage_samples(const ImageDesc& image, const Gpu
 /// of one color image.
 std::vector<Diagnostic> check_coverage_pass(const FrameGraph& graph, const Pass& pass);
 
+/// Whether a view is named for an image that the pass reads: it shows its samples, without its coverage map.
+bool shows_samples(const Pass& pass, ImageId id);
+
 }  // namespace hwsim::pipeline

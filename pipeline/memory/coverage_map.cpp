@@ -25,8 +25,8 @@ CoverageLayout make_layout(int samples, int positions) {
 }  // namespace
 
 const CoverageLayout& coverage_layout(int samples, int positions) {
-  static const std::array<CoverageLayout, 4> kLayouts = {make_layout(2, 4), make_layout(4, 8),
-                                                         make_layout(4, 16), make_layout(8, 16)};
+  static const std::array<CoverageLayout, 5> kLayouts = {
+      make_layout(2, 4), make_layout(4, 8), make_layout(4, 16), make_layout(8, 16), make_layout(8, 32)};
   for (const CoverageLayout& layout : kLayouts)
     if (layout.samples == samples && layout.positions == positions) return layout;
   throw std::invalid_argument("no coverage map of such samples and positions");

@@ -18,27 +18,45 @@
 // later behind them, they made silhouettes of fine meshes too thin (dragon at 4 of 16: 43.8 dB, 45.7 so).
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 namespace hwsim::pipeline {
 
-inline constexpr int kMaxCoveragePositions = 16;  ///< each has four bits in a map's word
+inline constexpr int kMaxCoveragePositions = 32;  ///< each has four bits in a map's words
+inline constexpr int kCoverageWordPositions = 16;
 inline constexpr std::uint32_t kNoSample = 15;
+
+/// 64-bit words of a pixel's map in memory.
+constexpr std::size_t coverage_words(int positions) { return positions > kCoverageWordPositions ? 2 : 1; }
 
 /// The entries of a pixel. Those of samples name the lowest sample of the same fragment. All zero: one
 /// fragment covers the pixel everywhere.
 class CoverageWord {
  public:
   CoverageWord() = default;
-  explicit CoverageWord(std::uint64_t word) : word_(word) {}
-  std::uint32_t at(int position) const { return static_cast<std::uint32_t>(word_ >> (4 * position)) & 15u; }
-  void set(int position, std::uint32_t sample) {
-    word_ = (word_ & ~(std::uint64_t{15} << (4 * position))) | std::uint64_t{sample} << (4 * position);
+  CoverageWord(const std::uint64_t* words, std::size_t count)
+      : words_{words[0], count > 1 ? words[1] : std::uint64_t{0}} {}
+  void store(std::uint64_t* words, std::size_t count) const {
+    for (std::size_t i = 0; i < count; ++i) words[i] = words_[i];
   }
-  std::uint64_t word() const { return word_; }
+  std::uint32_t at(int position) const {
+    return static_cast<std::uint32_t>(words_[word_of(position)] >> shift_of(position)) & 15u;
+  }
+  void set(int position, std::uint32_t sample) {
+    std::uint64_t& word = words_[word_of(position)];
+    const int shift = shift_of(position);
+    word = (word & ~(std::uint64_t{15} << shift)) | std::uint64_t{sample} << shift;
+  }
+  friend bool operator==(const CoverageWord&, const CoverageWord&) = default;
 
  private:
-  std::uint64_t word_ = 0;
+  static std::size_t word_of(int position) {
+    return static_cast<std::size_t>(position / kCoverageWordPositions);
+  }
+  static int shift_of(int position) { return 4 * (position % kCoverageWordPositions); }
+
+  std::array<std::uint64_t, 2> words_{};
 };
 
 /// What the rules need to know of an image's positions; the first `samples` of them are the samples'.

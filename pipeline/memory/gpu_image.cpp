@@ -4,6 +4,7 @@
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/image/image.h"
+#include "pipeline/memory/coverage_map.h"
 #include "pipeline/simd/codec-inl.h"
 #include "pipeline/simd/scalar_lane-inl.h"
 
@@ -36,7 +37,7 @@ GpuImage::GpuImage(Format f, int w, int h, int s, int array_layers, int coverage
     stale_lanes.resize(blocks);
   }
   if (coverage_samples > 0) {
-    coverage_map.resize(blocks * kBlockLanes);
+    coverage_map.resize(blocks * kBlockLanes * coverage_words(coverage_samples));
     coverage_whole.resize(blocks, ~std::uint64_t{0});
   }
   unsaved.resize(blocks);

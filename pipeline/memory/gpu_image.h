@@ -59,7 +59,7 @@ struct GpuImage {
   PackedSamples packed;                     ///< while shaders read (begin_reads)
 
   int coverage_samples = 0;                   ///< positions of the coverage map (memory/coverage_map.h)
-  std::vector<std::uint64_t> coverage_map;    ///< by pixel, tile by tile
+  std::vector<std::uint64_t> coverage_map;    ///< by pixel, tile by tile; one word each or two
   std::vector<std::uint64_t> coverage_whole;  ///< by tile: pixels that one fragment covers everywhere
 
   // Depth formats: tiles held as planes; their texels are stale.

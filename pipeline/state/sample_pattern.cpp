@@ -68,11 +68,12 @@ std::span<const SamplePosition> standard_sample_positions(int samples) {
 std::vector<SamplePosition> coverage_positions(int samples, int positions) {
   // Positions of the larger pattern that the samples' own pattern stands for: one a sample, with the least
   // sum of squared distances.
-  constexpr std::uint32_t k2Of4 = 0x9, k4Of8 = 0x5c, k4Of16 = 0xc28, k8Of16 = 0x3c66;
+  constexpr std::uint32_t k2Of4 = 0x9, k4Of8 = 0x5c, k4Of16 = 0xc28, k8Of16 = 0x3c66, k8Of32 = 0x23029011;
   const std::uint32_t replaced = samples == 2 && positions == 4    ? k2Of4
                                  : samples == 4 && positions == 8  ? k4Of8
                                  : samples == 4 && positions == 16 ? k4Of16
                                  : samples == 8 && positions == 16 ? k8Of16
+                                 : samples == 8 && positions == 32 ? k8Of32
                                                                    : 0;
   if (replaced == 0)
     throw std::invalid_argument("no pattern of " + std::to_string(samples) + " samples among " +

@@ -16,7 +16,7 @@ std::span<const SamplePosition> standard_sample_positions(int samples);
 
 /// The standard positions for `samples`, then those for `positions` without the ones nearest to them. Samples
 /// out of the larger pattern lie worse: dragon at 4 of 16 has 45.3 dB by its samples alone there, 48.1 dB
-/// here. For 2 of 4, 4 of 8, and 4 or 8 of 16. Throws as above.
+/// here. For 2 of 4, 4 of 8, 4 or 8 of 16, and 8 of 32. Throws as above.
 std::vector<SamplePosition> coverage_positions(int samples, int positions);
 
 /// How passes of eight samples reach more (docs/techniques/forward.md#multicast): every layer has the same

@@ -72,7 +72,7 @@ const Mistake kMistakes[] = {
      "gpu.features.native_msaa_max"},
     {"NoCoverageSamples", "run triangle.gltf -t csaa:mode=16xq -g gtx980", 3, "G006",
      "gpu.features.coverage_samples_max"},
-    {"NoSuchCoverage", "run triangle.gltf -t csaa:mode=32x", 3, "T003", "8x|8xq|16x|16xq"},
+    {"NoSuchCoverage", "run triangle.gltf -t csaa:mode=64x", 3, "T003", "8x|8xq|16x|16xq|32x"},
     {"NoPlanesToRead", "run triangle.gltf -t agaa:plane_path=on -g gtx980", 3, "G006",
      "gpu.features.compressed_depth_read"},
     {"UnknownGpu", "run triangle.gltf -g gtx981", 3, "C016", "gtx980"},

@@ -53,7 +53,7 @@ struct Frame {
   }
   Emulation run() const {
     GpuFeatures features = every_feature(32);
-    features.coverage_samples_max = 16;
+    features.coverage_samples_max = 32;
     return emulate(graph, features, FunctionalConfig{}, {});
   }
   FrameGraph graph;
@@ -63,36 +63,33 @@ TEST(CoverageMap, TakesWholeBytesOfAPixel) {
   EXPECT_EQ(coverage_map_bytes(4, 8), 3u);   // an entry has 3 bits
   EXPECT_EQ(coverage_map_bytes(4, 16), 6u);  // an entry has 3 bits
   EXPECT_EQ(coverage_map_bytes(8, 16), 8u);  // an entry has 4 bits
-  EXPECT_EQ(coverage_map_bytes(2, 4), 1u);   // an entry has 2 bits
+  EXPECT_EQ(coverage_map_bytes(8, 32), 16u);
+  EXPECT_EQ(coverage_map_bytes(2, 4), 1u);  // an entry has 2 bits
   EXPECT_EQ(coverage_map_bytes(8, 0), 0u);
   const ImageDesc image{"color", Format::rgba8_unorm, 100, 10, 4, 1, 16};
   EXPECT_EQ(allocated_bytes(image), 1000u * (4 * 4 + 6));
 }
 
-/// The least sum of squared distances between samples and positions, one each: over sets of positions taken
-/// by the first samples.
+/// The least sum of squared distances between samples and positions, one each: over sets of samples that the
+/// first positions stand for.
 int least_distance2(std::span<const SamplePosition> samples, std::span<const SamplePosition> positions) {
   constexpr int kNever = 1 << 20;
-  std::vector<int> least(std::size_t{1} << positions.size(), kNever);
+  std::vector<int> least(std::size_t{1} << samples.size(), kNever);
   least[0] = 0;
-  int best = kNever;
-  for (std::uint32_t taken = 0; taken < least.size(); ++taken) {
-    const auto k = static_cast<std::size_t>(std::popcount(taken));
-    if (k == samples.size()) best = std::min(best, least[taken]);
-    if (k >= samples.size()) continue;
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-      if ((taken >> i & 1u) != 0) continue;
-      const int dx = samples[k].x - positions[i].x, dy = samples[k].y - positions[i].y;
-      int& next = least[taken | 1u << i];
-      next = std::min(next, least[taken] + dx * dx + dy * dy);
-    }
-  }
-  return best;
+  for (const SamplePosition p : positions)
+    for (std::size_t taken = least.size(); taken-- > 0;)
+      for (std::size_t k = 0; k < samples.size(); ++k) {
+        if ((taken >> k & 1u) != 0) continue;
+        const int dx = samples[k].x - p.x, dy = samples[k].y - p.y;
+        int& next = least[taken | std::size_t{1} << k];
+        next = std::min(next, least[taken] + dx * dx + dy * dy);
+      }
+  return least.back();
 }
 
 TEST(CoverageMap, PositionsAreTheSamplesAndWhatLiesFarthestFromThem) {
   const auto same = [](SamplePosition a, SamplePosition b) { return a.x == b.x && a.y == b.y; };
-  for (const auto& [samples, positions] : {std::pair(2, 4), {4, 8}, {4, 16}, {8, 16}}) {
+  for (const auto& [samples, positions] : {std::pair(2, 4), {4, 8}, {4, 16}, {8, 16}, {8, 32}}) {
     const std::vector<SamplePosition> found = coverage_positions(samples, positions);
     const auto own = standard_sample_positions(samples), all = standard_sample_positions(positions);
     ASSERT_EQ(found.size(), all.size());
@@ -153,7 +150,7 @@ TEST(CoverageMap, HiddenPositionsStandForTheNearestSample) {
 }
 
 TEST(CoverageMap, NearestSamplesAreNearest) {
-  for (const auto& [samples, positions] : {std::pair(2, 4), {4, 8}, {4, 16}, {8, 16}}) {
+  for (const auto& [samples, positions] : {std::pair(2, 4), {4, 8}, {4, 16}, {8, 16}, {8, 32}}) {
     const std::vector<SamplePosition> at = coverage_positions(samples, positions);
     const CoverageLayout& layout = coverage_layout(samples, positions);
     const auto distance = [&](std::size_t q, std::size_t k) {
@@ -196,6 +193,28 @@ TEST(CoverageMap, MeetsMultisamplingWhereSamplesSuffice) {
     EXPECT_LT(differing, edges * 2 / 5) << samples << " of " << positions;
     EXPECT_LT(error, coarse_error) << samples << " of " << positions;
   }
+}
+
+// More positions than any GPU's programmable ones: beside multisampling at 32 positions of its own.
+TEST(CoverageMap, ThirtyTwoPositionsWeighEdgesFiner) {
+  std::mt19937 random(5);
+  const auto next = [&] { return static_cast<float>(random() % 2401) / 1000.0f - 1.2f; };
+  double error = 0.0, coarse_error = 0.0;
+  int finer = 0;
+  for (int i = 0; i < 20; ++i) {
+    const std::vector<glm::vec3> t = {{next(), next(), 0.5f}, {next(), next(), 0.5f}, {next(), next(), 0.5f}};
+    const Emulation ours = Frame(triangles(t), 8, 32).run(), coarse = Frame(triangles(t), 8, 0).run(),
+                    fine = Frame(triangles(t), 32, 0).run();
+    for (std::size_t p = 0; p < fine.color.pixels.size(); ++p) {
+      const float expected = fine.color.pixels[p].x, found = ours.color.pixels[p].x;
+      EXPECT_EQ(32.0f * found, std::round(32.0f * found)) << p;
+      finer += 8.0f * found != std::round(8.0f * found) ? 1 : 0;
+      error += std::abs(found - expected);
+      coarse_error += std::abs(coarse.color.pixels[p].x - expected);
+    }
+  }
+  EXPECT_GT(finer, 200);
+  EXPECT_LT(error, 0.6 * coarse_error);
 }
 
 // Two triangles that share an edge and fill the frame: weights of 1 together, in either order of drawing.
