@@ -40,7 +40,7 @@ Blueprint make(const Parameters& p) {
   Blueprint out;
   out.looks = {{.name = "wood", .color = {0.28, 0.2, 0.13}},
                {.name = "ceramic", .color = {0.5, 0.45, 0.4}, .roughness = 0.3},
-               {.name = "wire", .color = {0.05, 0.05, 0.06}, .metallic = 0.5, .roughness = 0.4},
+               {.name = "wire", .color = {0.7, 0.7, 0.72}, .roughness = 0.5},  // weathered aluminum
                {.name = "ground", .color = {0.2, 0.26, 0.12}, .roughness = 1.0}};
   Model pole{"pole", {{MeshSurface{}, 0}, {MeshSurface{}, 1}}};
   add_pole(pole);
@@ -66,6 +66,10 @@ Blueprint make(const Parameters& p) {
   if (poles > 1) out.placements.push_back({2, {}, 0.0});
   out.eye = {3.2, 1.7, 9.0};
   out.target = {0.0, 6.0, -1.5 * spacing};
+  // From the side, and strong: a wire has a side brighter than the sky and a dark one, so that its lighting
+  // can be seen.
+  out.sun_direction = {0.8, -0.45, -0.3};
+  out.sun_lux = 4.0;
   return out;
 }
 

@@ -294,6 +294,30 @@ TEST(Wire, HazardsEndInNumbers) {
   }
 }
 
+// On the scene that ships, both soft forms change what is seen of the wires.
+TEST(Wire, LightingShowsOnTheGeneratedScene) {
+  algos::FrameRequest request;
+  request.scene = generated_scene("wires");
+  request.width_px = 320;
+  request.height_px = 180;
+  request.shadows = false;
+  const auto image = [&](const std::string& lighting) {
+    const std::string technique = "wire_aa:lighting=" + lighting + "+msaa4x";
+    const FrameGraph graph = algos::build_frame(algos::parse_technique(technique), request);
+    return emulate(graph, request.features, request.functional, {}).color;
+  };
+  const Image plain = image("none");
+  for (const char* lighting : {"half_lambert", "flatten", "both"}) {
+    const Image soft = image(lighting);
+    int changed = 0;
+    for (std::size_t i = 0; i < plain.pixels.size(); ++i) {
+      const auto code = [&](const Image& of) { return 255.0f * srgb_from_linear(of.pixels[i].y); };
+      changed += std::abs(code(soft) - code(plain)) > 2.0f ? 1 : 0;
+    }
+    EXPECT_GT(changed, 100) << lighting;
+  }
+}
+
 TEST(Wire, FartherWiresAreDrawnFirst) {
   const auto wires = generated_scene("wires:poles=3");
   int checked = 0;
