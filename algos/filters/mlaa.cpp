@@ -9,13 +9,13 @@ using namespace pipeline;
 
 struct MlaaOptions {
   double threshold = 0.03125;
-  int count_bits = 4;
+  int count_bits = 8;
 };
 
 void describe(OptionList& list, MlaaOptions& o) {
   list.real("threshold", o.threshold, {0.01, 0.5}, "contrast of luma that makes an edge");
   list.choice("count_bits", o.count_bits, "4|8", std::array{4, 8},
-              "bits of a run's length with its stop bit: up to 7 pixels, or 127");
+              "bits of a run's length with its stop bit: cut at 7 pixels, or at 127");
 }
 
 ImageId add_mlaa(FrameGraph& graph, ImageId input, const MlaaOptions& options) {
