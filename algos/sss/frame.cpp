@@ -135,6 +135,25 @@ void add_marks(FrameGraph& graph, SssFrame& f) {
   });
 }
 
+bool has_coverage_map(const FrameRequest& request, SssBase base) {
+  if (base == SssBase::automatic) return request.features.coverage_samples_max >= kSssCoverageSamples;
+  return base == SssBase::csaa32x;
+}
+
+ForwardTarget make_base(FrameGraph& graph, bool coverage_map) {
+  ForwardTarget base;
+  base.width = graph.width();
+  base.height = graph.height();
+  base.samples = kSssBaseSamples;
+  base.coverage_samples = coverage_map ? kSssCoverageSamples : 0;
+  base.centroid = true;
+  base.color = graph.add_image({"multisampled_color", Format::rgba8_srgb, base.width, base.height,
+                                base.samples, 1, base.coverage_samples});
+  base.depth =
+      graph.add_image({"multisampled_depth", Format::d24_unorm_s8, base.width, base.height, base.samples});
+  return base;
+}
+
 }  // namespace
 
 SssFrame start_sss_frame(FrameGraph& graph, const FrameRequest& request, const SssOptions& o,
@@ -142,8 +161,7 @@ SssFrame start_sss_frame(FrameGraph& graph, const FrameRequest& request, const S
   SssFrame f;
   f.parts = prepare_frame(graph, request);
   if (o.shading == SssShading::phong) f.parts.lighting.model = ShadingModel::phong;
-  f.base = make_forward_target(graph, "multisampled", graph.width(), graph.height(), kSssBaseSamples);
-  f.base.centroid = true;
+  f.base = make_base(graph, has_coverage_map(request, o.base));
   add_forward(graph, f.parts, "", f.base);
   f.critical = list_critical(f.parts, o.theta_c_deg);
   if (f.critical.empty()) {
@@ -154,10 +172,6 @@ SssFrame start_sss_frame(FrameGraph& graph, const FrameRequest& request, const S
   f.uniforms = make_uniforms(graph, f.parts, o);
   f.over_others = o.rest == SssRest::others;
   if (f.over_others || needs_marks) add_marks(graph, f);
-  if (f.over_others) {
-    f.below = f.base.color;
-    return f;
-  }
   f.below = graph.add_image({"resolved", Format::rgba8_srgb, graph.width(), graph.height(), 1});
   graph.add_resolve("resolve", f.base.color, f.below);
   return f;
@@ -173,6 +187,9 @@ void add_sss_composite(FrameGraph& graph, const SssFrame& f, const FragmentProgr
   if (f.over_others) {
     uniforms.mark_slot = static_cast<int>(pass.sampled.size());
     pass.sampled.push_back(f.marks);
+    pass.sampled.push_back(f.base.color);
+    pass.views.resize(pass.sampled.size(), Format::none);
+    pass.views.back() = graph.image(f.base.color).format;
   }
   pass.storage = std::move(buffers);
   pass.fragment = &program;

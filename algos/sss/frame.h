@@ -22,9 +22,9 @@ struct SssFrame {
   FrameParts parts;
   ForwardTarget base;
   std::vector<CriticalDraw> critical;
-  pipeline::ImageId below;   ///< what the composite lies over: the frame, resolved or, with marks, not
+  pipeline::ImageId below;   ///< the frame, resolved: what the composite lies over
   pipeline::ImageId marks;   ///< samples of the frame whose triangle is sampled; none: nothing asks
-  bool over_others = false;  ///< the composite takes the samples without a mark for the rest
+  bool over_others = false;  ///< beside samples the composite takes the frame's without a mark for the rest
   SssUniforms uniforms;
 };
 

@@ -33,15 +33,21 @@ void describe(OptionList& list, SssOptions& o) {
   describe_sampling(list, o);
   list.choice("shading", o.shading, "scene|phong",
               "highlights of the whole frame: the scene's model, or Phong's, as the paper has it");
+  list.choice("base", o.base, "auto|msaa8x|csaa32x",
+              "the frame below: 8 samples, with 32 positions of coverage where the GPU has them; without: 8x "
+              "multisampling");
   list.choice("rest", o.rest, "frame|others",
-              "under what samples leave of a pixel: the whole frame, as the paper has it, or its other "
-              "triangles");
+              "under what samples leave of a pixel: the whole frame, which holds their triangles already, or "
+              "its other triangles");
 }
 
 void describe(OptionList& list, SssPointOptions& o) {
   describe(list, o.sss);
   list.choice("points", o.points, "auto|geometry_shader|tessellator",
               "from a geometry shader, or from the tessellator, whose points fill no buffer");
+  list.choice(
+      "depth", o.depth, "fixed|shader",
+      "points are tested by the hardware against the frame's samples, or by their shader against one");
 }
 
 void describe(OptionList& list, SssComputeOptions& o) {
@@ -53,7 +59,9 @@ void describe(OptionList& list, SssComputeOptions& o) {
 
 void describe(OptionList& list, SssListOptions& o) {
   describe(list, o.sss);
-  list.choice("m", o.grid, "2|4|8|adaptive", "m x m places in a pixel");
+  list.choice(
+      "m", o.grid, "2|4|8|adaptive",
+      "m x m places in a pixel; adaptive: 4, or 8 where a highlight is thinner than a quarter of a pixel");
   list.choice("node_bytes", o.node_bytes, "12|16|32", std::array{12, 16, 4 * kSssPlaceNodeWords},
               "of a list's node; 32: with its places and plane, so that nodes hide each other place by "
               "place");

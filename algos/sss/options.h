@@ -9,22 +9,27 @@
 namespace hwsim::algos {
 
 enum class SssShading : std::uint8_t { scene, phong };
+/// What is drawn under the samples: 8x multisampling, or 8 samples with 32 positions of coverage (the paper's
+/// "count 8, quality 32"); automatic: as the GPU has them.
+enum class SssBase : std::uint8_t { automatic, msaa8x, csaa32x };
 enum class SssRest : std::uint8_t { frame, others };  ///< what lies under the samples of a pixel
 
+/// The defaults are the configuration that is compared with the paper's times and pictures.
 struct SssOptions {
-  double theta_c_deg = 5.0;
+  double theta_c_deg = 2.0;
   double triangle_px = 4.0;
   double highlight_px = 1.0;
-  SssMode mode = SssMode::both;
+  SssMode mode = SssMode::either;
   bool early_exit = true;
-  double threshold = 1.0 / 255.0;
+  double threshold = 0.05;
   double samples_per_px = 16.0;
   double samples_min = 4.0;
-  double samples_max = 64.0;
+  double samples_max = 256.0;
   double border_share = 0.25;
   double depth_bias_steps = 2.0;  ///< steps of 24-bit depth
   double depth_slope = 0.1;
   SssShading shading = SssShading::scene;
+  SssBase base = SssBase::automatic;
   SssRest rest = SssRest::others;
 };
 void describe(OptionList& list, SssOptions& o);
@@ -33,6 +38,7 @@ enum class SssPointSource : std::uint8_t { automatic, geometry_shader, tessellat
 struct SssPointOptions {
   SssOptions sss;
   SssPointSource points = SssPointSource::automatic;
+  SssPointDepth depth = SssPointDepth::fixed;
 };
 void describe(OptionList& list, SssPointOptions& o);
 
@@ -49,7 +55,7 @@ enum class SssGrid : std::uint8_t { places_2x2, places_4x4, places_8x8, adaptive
 enum class SssBoxes : std::uint8_t { boxes, raster };  ///< who makes triangles conservative
 struct SssListOptions {
   SssOptions sss;
-  SssGrid grid = SssGrid::places_4x4;
+  SssGrid grid = SssGrid::adaptive;
   int node_bytes = 16;
   int capacity_nodes = 0;   ///< 0: four a pixel
   double budget_mib = 0.0;  ///< 0: capacity_nodes says it

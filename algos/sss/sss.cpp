@@ -11,33 +11,50 @@ namespace hwsim::algos {
 namespace {
 using namespace pipeline;
 
+/// The mean over a pixel's samples.
+ImageId resolved_sum(FrameGraph& graph, ImageId sum) {
+  if (graph.image(sum).samples == 1) return sum;
+  const ImageId mean = graph.add_image({"sum_mean", Format::rgba16_float, graph.width(), graph.height(), 1});
+  graph.add_resolve("resolve_sum", sum, mean);
+  return mean;
+}
+
 FrameGraph build_points(const FrameRequest& request, const SssPointOptions& options) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   SssFrame f = start_sss_frame(graph, request, options.sss);
   if (f.critical.empty()) return graph;
-  const ImageId sum = graph.add_image({"sum", Format::rgba16_float, graph.width(), graph.height(), 1});
+  const bool fixed = options.depth == SssPointDepth::fixed;
+  const int samples = fixed ? kSssBaseSamples : 1;
+  const ImageId sum = graph.add_image({"sum", Format::rgba16_float, graph.width(), graph.height(), samples});
   graph.add_clear("sum_clear", {sum});
   Pass& pass = graph.add_pass("sample", PassKind::draw);
+  pass.samples = samples;
   pass.color = {sum};
   pass.sampled = sss_slots(f);
+  if (fixed) {
+    pass.depth = f.base.depth;
+    pass.depth_read_only = true;
+    f.uniforms.depth_slope += 1.0f;  // a point is flat, half a pixel both ways
+  }
   const bool tessellated =
       options.points == SssPointSource::tessellator ||
       (options.points == SssPointSource::automatic && request.features.tessellator_points);
   add_sss_batches(pass, f, [&](DrawBatch& batch, SssVertex vertex) {
-    const int scalars = 4 + sss_point_shading_program(vertex, f.uniforms.lighting.extended).varying_scalars;
+    batch.fragment = &sss_point_shading_program(vertex, options.depth, f.uniforms.lighting.extended);
+    const int scalars = 4 + batch.fragment->varying_scalars;
     const int limit =
         tessellated ? static_cast<int>(f.uniforms.samples_max) : request.functional.gs_max_scalars / scalars;
     const int most = std::max(1, std::min(static_cast<int>(f.uniforms.samples_max), limit));
     batch.tessellated_points = tessellated;
     auto uniforms = std::make_shared<SssUniforms>(f.uniforms);
     uniforms->samples_max = static_cast<float>(most);
-    batch.geometry = &sss_points_program(vertex, most);
-    batch.fragment = &sss_point_shading_program(vertex, f.uniforms.lighting.extended);
+    batch.geometry = &sss_points_program(vertex, options.depth, most);
     batch.geometry_uniforms = uniforms;
     batch.fragment_uniforms = uniforms;
+    batch.state.depth = {fixed, false, Compare::less_equal};
     batch.state.blend = {{true, BlendFactor::one, BlendFactor::one, BlendFactor::one, BlendFactor::one, 0xf}};
   });
-  add_sss_composite(graph, f, sss_composite_program(), {sum}, {});
+  add_sss_composite(graph, f, sss_composite_program(), {resolved_sum(graph, sum)}, {});
   return graph;
 }
 

@@ -88,8 +88,12 @@ TEST(CarBody, BreaksAHighlightIntoBeadsThatShadingSamplesClose) {
   EXPECT_GT(msaa8x, 0.15);
   EXPECT_LT(ssaa16x, msaa8x / 3.0);
   EXPECT_LT(beads("ssaa64x", request, truth), ssaa16x / 2.0);
-  for (const char* technique : {"sss_gs", "sss_cs", "sss_ppll:m=8"})
-    EXPECT_LT(beads(technique, request, truth), msaa8x / 2.0) << technique;
+  // As they are timed: the defaults, which the published rows' mapping names.
+  for (const char* technique : {"sss_gs", "sss_cs"})
+    EXPECT_LT(beads(technique, request, truth), msaa8x / 2.5) << technique;
+  EXPECT_LT(beads("sss_ppll", request, truth), ssaa16x);
+  // Over the whole frame, which holds what was missed, beads stay.
+  EXPECT_GT(beads("sss_ppll:rest=frame", request, truth), msaa8x * 0.9);
 }
 
 }  // namespace

@@ -140,6 +140,7 @@ Fields<Struct> shared_sss() {
           FIELD("pt_bias_units", o.sss.depth_bias_steps),
           FIELD("pt_bias_slope", o.sss.depth_slope),
           FIELD("shading", o.sss.shading),
+          FIELD("base", o.sss.base),
           FIELD("rest", o.sss.rest)};
 }
 
@@ -147,7 +148,7 @@ TEST(Options, NamesOfSelectiveSupersamplingMeanTheirFields) {
   {
     using Struct = SssPointOptions;
     Fields<Struct> fields = shared_sss<Struct>();
-    fields.insert(FIELD("points", o.points));
+    fields.insert({FIELD("points", o.points), FIELD("depth", o.depth)});
     check_fields<Struct>("sss_gs", fields);
   }
   {

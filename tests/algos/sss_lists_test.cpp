@@ -47,10 +47,11 @@ TEST(SssLists, PlacesOnSharedEdgesBelongToOneTriangle) {
       }
       triangle.area2 = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
       if (triangle.area2.v == 0.0f) continue;
+      const algos::HWY_NAMESPACE::PixelEdges<F> edges(triangle);
       for (int i = 0; i < m * m; ++i) {
         const F px((static_cast<float>(i % m) + 0.5f) * static_cast<float>(step));
         const F py((static_cast<float>(i / m) + 0.5f) * static_cast<float>(step));
-        found[static_cast<std::size_t>(i)] += triangle.covers(px, py).v ? 1 : 0;
+        found[static_cast<std::size_t>(i)] += edges.cover(px, py).v ? 1 : 0;
       }
     }
     for (std::size_t i = 0; i < found.size(); ++i) ASSERT_EQ(found[i], 1) << round << " place " << i;

@@ -40,7 +40,7 @@ TEST(Sss, WithoutCriticalTrianglesTheImageIsThatOfMultisampling) {
     EXPECT_EQ(difference(msaa.color, none.color, "image"), "") << variant;
     EXPECT_EQ(none.trace.passes.size(), msaa.trace.passes.size());
     // All of them uncritical in this view: the further passes run and change nothing.
-    const Emulation small = run(scene, variant + ":tri_px=0");
+    const Emulation small = run(scene, variant + ":tri_px=0,hl_px=0");
     EXPECT_EQ(difference(msaa.color, small.color, "image"), "") << variant;
     EXPECT_GT(counters(small)[algos::SssCounters::sss_tested_primitives], 0u);
     EXPECT_EQ(counters(small)[algos::SssCounters::sss_processed_primitives], 0u);
@@ -77,7 +77,7 @@ TEST(Sss, WeightsOfATrianglesPointsAddUpToItsArea) {
     u->samples_max = 72.0f;
     SampleFrame frame(scene, 128, 128, 1);
     DrawBatch batch = frame.all_draws(mesh_surface_program(), &program);
-    batch.geometry = &algos::sss_points_program(algos::SssVertex::plain, 72);
+    batch.geometry = &algos::sss_points_program(algos::SssVertex::plain, algos::SssPointDepth::shader, 72);
     batch.geometry_uniforms = u;
     batch.fragment_uniforms = std::make_shared<int>(0);
     batch.state.blend = {{true, BlendFactor::one, BlendFactor::one, BlendFactor::one, BlendFactor::one, 0xf}};
@@ -97,7 +97,8 @@ TEST(Sss, WeightsOfATrianglesPointsAddUpToItsArea) {
 TEST(Sss, BothPointVariantsGiveTheSameImage) {
   const auto scene = rods();
   const std::string parameters = ":mode=or,hl_px=2,early_exit=off,k_max=48";
-  const Emulation gs = run(scene, "sss_gs" + parameters), cs = run(scene, "sss_cs" + parameters);
+  const Emulation gs = run(scene, "sss_gs" + parameters + ",depth=shader"),
+                  cs = run(scene, "sss_cs" + parameters);
   EXPECT_GT(counters(gs)[algos::SssCounters::sss_point_samples], 1000u);
   EXPECT_EQ(counters(gs)[algos::SssCounters::sss_point_samples],
             counters(cs)[algos::SssCounters::sss_point_samples]);
@@ -205,10 +206,56 @@ TEST(Sss, WhatTheEdgeOfAWallHidesStaysHidden) {
   mesh.indices.insert(mesh.indices.end(), {wall, wall + 1, wall + 2, wall, wall + 2, wall + 3});
   auto finished = std::make_shared<Scene>(*finish(std::move(scene), std::move(mesh)));
   finished->meshes[0].parts = {{0, rod, 0}, {rod, 6, 1}};
-  for (const std::string variant : kVariants) {
-    const Emulation e = run(finished, variant + ":mode=or,early_exit=off");
+  // A point that the hardware tests is a square, which reaches past the wall's edge.
+  for (const std::string variant : {"sss_gs:depth=shader", "sss_cs:m", "sss_ppll:m"}) {
+    const std::string technique = variant.substr(0, variant.find(":m"));
+    const Emulation e =
+        run(finished, technique + (technique == variant ? "," : ":") + "mode=or,early_exit=off");
     EXPECT_GT(counters(e)[algos::SssCounters::sss_processed_primitives], 100u) << variant;
     EXPECT_EQ(light_of(e.color), 0.0) << variant;
+  }
+}
+
+// The paper's 4.1: the depth buffer is locked, and the hardware tests points that come a little forward.
+TEST(Sss, TheHardwareTestsPointsAgainstTheFramesSamples) {
+  const auto scene = rods();
+  const std::string parameters = ":mode=or,hl_px=2,early_exit=off,k_max=48";
+  const Emulation fixed = run(scene, "sss_gs" + parameters),
+                  loads = run(scene, "sss_gs" + parameters + ",depth=shader");
+  const PassCounters n = total(test::pass_named(fixed.trace, "sample")),
+                     m = total(test::pass_named(loads.trace, "sample"));
+  EXPECT_EQ(n.tex.fetched_32bit_texels, 0u);
+  EXPECT_EQ(n.ps.discarded_invocations, 0u);
+  EXPECT_GT(n.zrop.early_z_tested_samples, 8 * n.technique[algos::SssCounters::sss_point_samples] * 9 / 10);
+  EXPECT_EQ(n.zrop.written_samples, 0u);
+  EXPECT_GT(m.tex.fetched_32bit_texels, 0u);
+  EXPECT_EQ(m.zrop.early_z_tested_samples, 0u);
+  EXPECT_EQ(n.technique[algos::SssCounters::sss_point_samples],
+            m.technique[algos::SssCounters::sss_point_samples]);
+  // A point's square is spread over the pixels that it lies on: as bright, a little wider.
+  EXPECT_NEAR(light_of(fixed.color), light_of(loads.color), 0.03 * light_of(loads.color));
+}
+
+// "Count 8, quality 32": 8 samples and 32 positions of coverage, where the GPU has them.
+TEST(Sss, TheFrameBelowIsCoverageSampledWhereTheGpuCan) {
+  const auto scene = rods();
+  const auto map_of = [&](const std::string& technique, int positions) {
+    algos::FrameRequest request;
+    request.scene = scene;
+    request.width_px = kSssWidth;
+    request.height_px = kSssHeight;
+    request.features.coverage_samples_max = positions;
+    const FrameGraph graph = algos::build_frame(algos::parse_technique(technique), request);
+    compile(graph, request.features, request.functional);
+    for (const ImageDesc& image : graph.images())
+      if (image.name == "multisampled_color") return image.coverage_samples;
+    return -1;
+  };
+  for (const std::string variant : kVariants) {
+    EXPECT_EQ(map_of(variant, 32), 32) << variant;
+    EXPECT_EQ(map_of(variant, 16), 0) << variant;
+    EXPECT_EQ(map_of(variant + ":base=msaa8x", 32), 0) << variant;
+    EXPECT_THROW(map_of(variant + ":base=csaa32x", 16), InputError) << variant;
   }
 }
 
@@ -267,15 +314,16 @@ TEST(Sss, AllocatesWhatThePaperAndItsArithmeticSay) {
     return all - kPixels * (8 * 8 + 4 + 4);  // 8 samples of color and depth; resolved color; output
   };
   const std::string paper = ":rest=frame", lists = "sss_ppll:rest=frame,";
-  EXPECT_EQ(extra("sss_gs" + paper), 8 * kPixels);                                // 7.03 MiB
+  EXPECT_EQ(extra("sss_gs" + paper + ",depth=shader"), 8 * kPixels);              // 7.03 MiB
+  EXPECT_EQ(extra("sss_gs" + paper), (8 * 8 + 8) * kPixels);                      // a sum for each sample
   EXPECT_EQ(extra("sss_cs" + paper), 16 * kPixels);                               // 14.06 MiB
   EXPECT_EQ(extra("sss_ppll" + paper), 4 * kPixels + 4 * 16 * kPixels + 4);       // 59.8 MiB
   EXPECT_EQ(extra(lists + "node_bytes=12"), 4 * kPixels + 4 * 12 * kPixels + 4);  // 45.7 MiB
   const std::uint64_t budget = 27u << 20;
   EXPECT_LE(extra(lists + "budget_mib=27"), budget + 4);
   EXPECT_GT(extra(lists + "budget_mib=27"), budget - 16);
-  // Over the frame's other triangles: a mark for each sample, and no resolved frame.
-  EXPECT_EQ(extra("sss_gs"), (8 + 8 - 4) * kPixels);
+  // Over the frame's other triangles: a mark for each sample.
+  EXPECT_EQ(extra("sss_cs"), (16 + 8) * kPixels);
   EXPECT_EQ(extra(lists + "node_bytes=32"), 4 * kPixels + 4 * 32 * kPixels + 4 + 8 * kPixels);
 }
 

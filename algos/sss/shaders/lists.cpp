@@ -42,9 +42,11 @@ struct BoxShader : SssGeometryShader<kVertex, pipeline::GeometryOutput::triangle
   }
 
  private:
+  /// 4 or 8: the frame has eight samples a pixel, so fewer places would coarsen edges; and places lie no
+  /// farther apart than a highlight is wide.
   template <class F>
   static F fitting_grid(F highlight_px) {
-    return select(highlight_px < F(0.25f), F(8.0f), select(highlight_px < F(1.0f), F(4.0f), F(2.0f)));
+    return select(highlight_px < F(0.25f), F(8.0f), F(4.0f));
   }
 
   template <class S, class F>
@@ -90,17 +92,19 @@ struct ListShader {
     constexpr int kTriangle = 3 * corner_scalars(kVertex);
     const PixelTriangle<F> t = read_triangle(s, kTriangle);
     const F grid = s.flat_attr(kTriangle + kGrid);
-    const F step = F(256.0f) / grid, places = grid * grid;
-    F covered(0.0f);
-    s.loop_each(kSampleBlock, to_int(places), s.valid(), [&](int i, typename S::M left) HWY_ATTR {
-      const Vec2<F> p = place(i, grid, step);
-      covered = covered + select(left & t.covers(p.x, p.y), F(1.0f), F(0.0f));
+    const F places = grid * grid;
+    const PixelEdges<F> edges(t);
+    PixelPlaces<F> at(grid);
+    auto covered = s.active() & (F(1.0f) < F(0.0f));
+    s.loop_each(kSampleBlock, to_int(places), s.valid(), [&](int, typename S::M left) HWY_ATTR {
+      covered = covered | (left & edges.cover(at.x(), at.y()));
+      at.next();
     });
-    const auto reached = s.active() & (covered > F(0.0f));
+    const auto reached = s.active() & covered;
     s.discard(!reached);
     s.branch(kCriticalBlock, reached, [&]() HWY_ATTR {
       const OpenSamples<I> samples = open_samples(s, u, t, s.flat_attr(kTriangle + kBias));
-      const SeenPart<S> part = light_seen(s, u, t, grid, step, samples, reached);
+      const SeenPart<S> part = light_seen(s, u, t, edges, grid, samples, reached);
       const auto seen = reached & (part.weight > F(0.0f));
       const F share = F(1.0f) / max(part.weight, F(1e-3f));
       F z = t.depth(part.sum_x * share, part.sum_y * share);
@@ -132,14 +136,6 @@ struct ListShader {
     t.slope_x = s.flat_attr(triangle_at + kSlopeX) * F(1.0f / 256.0f);
     t.slope_y = s.flat_attr(triangle_at + kSlopeY) * F(1.0f / 256.0f);
     return t;
-  }
-
-  /// Centers of a regular grid over the pixel.
-  template <class F>
-  static Vec2<F> place(int i, F grid, F step) {
-    const F index(static_cast<float>(i));
-    const F row = floor((index + F(0.5f)) / grid);
-    return {(index - row * grid + F(0.5f)) * step, (row + F(0.5f)) * step};
   }
 
   /// A bit for each of the frame's samples.
@@ -208,8 +204,9 @@ struct ListShader {
   static constexpr float kUnsureWeight = 1.0f / 64.0f;
 
   template <class S, class F, class I>
-  static SeenPart<S> light_seen(S& s, const SssUniforms& u, const PixelTriangle<F>& t, F grid, F step,
-                                const OpenSamples<I>& samples, typename S::M reached) {
+  static SeenPart<S> light_seen(S& s, const SssUniforms& u, const PixelTriangle<F>& t,
+                                const PixelEdges<F>& edges, F grid, const OpenSamples<I>& samples,
+                                typename S::M reached) {
     std::array<F, static_cast<std::size_t>(3 * attribute_count(kVertex))> values;
     for (int v = 0; v < 3; ++v)
       for (int k = 0; k < attribute_count(kVertex); ++k)
@@ -217,11 +214,13 @@ struct ListShader {
             s.flat_attr(v * corner_scalars(kVertex) + 4 + k);
     const F zero(0.0f);
     SeenPart<S> part = {zero, zero, zero, {zero, zero, zero}, {I(0), I(0)}};
+    PixelPlaces<F> at(grid);
     s.loop_each(kShadeBlock, to_int(grid * grid), reached, [&](int i, typename S::M left) HWY_ATTR {
-      const Vec2<F> p = place(i, grid, step);
+      const Vec2<F> p = {at.x(), at.y()};
+      at.next();
       const I near = near_sample<F, I>(u, p.x * F(1.0f / 256.0f), p.y * F(1.0f / 256.0f)).number;
       const auto open = I(0) < (lanes::shift_right_by(samples.open, near) & I(1));
-      const auto inside = left & open & t.covers(p.x, p.y);
+      const auto inside = left & open & edges.cover(p.x, p.y);
       s.branch(kStoreBlock, inside, [&]() HWY_ATTR {
         SurfacePoint<S> point(s);
         set_point(t, values, p, point);

@@ -23,28 +23,62 @@ struct PixelTriangle {
 
   F depth(F px, F py) const { return z[0] + slope_x * (px - x[0]) + slope_y * (py - y[0]); }
 
-  /// The top-left rule, by the same operations for both triangles of an edge: a place is in exactly one.
-  auto covers(F px, F py) const {
-    auto inside = F(0.0f) < F(1.0f);
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3;
-      // The edge's own direction is the one that a clockwise triangle has it on top or left in.
-      const auto up = (y[i] > y[j]) | ((!(y[i] < y[j])) & (x[j] > x[i]));
-      const F ax = select(up, x[i], x[j]), ay = select(up, y[i], y[j]);
-      const F bx = select(up, x[j], x[i]), by = select(up, y[j], y[i]);
-      const F side = (bx - ax) * (py - ay) - (by - ay) * (px - ax);
-      const F turn = select(up, area2, F(0.0f) - area2);
-      inside = inside & (((!(side < F(0.0f))) & (turn > F(0.0f))) | ((side < F(0.0f)) & (turn < F(0.0f))));
-    }
-    return inside;
-  }
-
   pipeline::HWY_NAMESPACE::Vec3<F> barycentric(F px, F py) const {
     const F inv = F(1.0f) / ((x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]));
     const F b1 = ((px - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (py - y[0])) * inv;
     const F b2 = ((x[1] - x[0]) * (py - y[0]) - (px - x[0]) * (y[1] - y[0])) * inv;
     return {F(1.0f) - b1 - b2, b1, b2};
   }
+};
+
+/// The triangle's edges, ready for many places: what does not change from place to place is computed once.
+template <class F>
+class PixelEdges {
+ public:
+  explicit PixelEdges(const PixelTriangle<F>& t) {
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      // The edge's own direction is the one that a clockwise triangle has it on top or left in.
+      const auto up = (t.y[i] > t.y[j]) | ((!(t.y[i] < t.y[j])) & (t.x[j] > t.x[i]));
+      x_[i] = select(up, t.x[i], t.x[j]);
+      y_[i] = select(up, t.y[i], t.y[j]);
+      const F turn = select(up, t.area2, F(0.0f) - t.area2);
+      const F sign = select(turn < F(0.0f), F(-1.0f), F(1.0f));
+      dx_[i] = (select(up, t.x[j], t.x[i]) - x_[i]) * sign;
+      dy_[i] = (select(up, t.y[j], t.y[i]) - y_[i]) * sign;
+      // Products of whole numbers are whole, rounded or not: 0 belongs to the side that turns clockwise.
+      least_[i] = select(turn > F(0.0f), F(-0.5f), select(turn < F(0.0f), F(0.5f), F(3e38f)));
+    }
+  }
+
+  /// The top-left rule, by the same operations for both triangles of an edge: a place is in exactly one.
+  auto cover(F px, F py) const {
+    auto inside = dx_[0] * (py - y_[0]) - dy_[0] * (px - x_[0]) > least_[0];
+    for (int i = 1; i < 3; ++i) inside = inside & (dx_[i] * (py - y_[i]) - dy_[i] * (px - x_[i]) > least_[i]);
+    return inside;
+  }
+
+ private:
+  F x_[3], y_[3], dx_[3], dy_[3];
+  F least_[3];  ///< what lies inside is beyond it; where the triangle has no area, nothing is
+};
+
+/// Centers of a regular grid over the pixel, row by row: 1/256 px from its corner.
+template <class F>
+class PixelPlaces {
+ public:
+  explicit PixelPlaces(F grid) : step_(F(256.0f) / grid), x_(step_ * F(0.5f)), y_(x_) {}
+  F x() const { return x_; }
+  F y() const { return y_; }
+  void next() {
+    x_ = x_ + step_;
+    const auto row_ends = x_ > F(256.0f);
+    y_ = select(row_ends, y_ + step_, y_);
+    x_ = select(row_ends, step_ * F(0.5f), x_);
+  }
+
+ private:
+  F step_, x_, y_;
 };
 
 /// Nodes: color and covered 64ths of the pixel, depth, the next node. 12 bytes: 8 bits of the color's square

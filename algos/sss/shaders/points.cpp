@@ -15,13 +15,16 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::algos::HWY_NAMESPACE {
 
-/// A point's varyings: attributes, the change of uv for a pixel where there are textures, the weight, the
-/// depth that is tested, and the sample that it is tested against.
-constexpr int point_scalars(SssVertex vertex) {
-  return attribute_count(vertex) + (vertex == SssVertex::plain ? 3 : 7);
+/// A point's varyings: attributes, the change of uv for a pixel where there are textures, the weight; where
+/// the shader tests depth, that depth and the sample that it is tested against.
+constexpr int weight_scalar(SssVertex vertex) {
+  return attribute_count(vertex) + (vertex == SssVertex::plain ? 0 : 4);
+}
+constexpr int point_scalars(SssVertex vertex, SssPointDepth depth) {
+  return weight_scalar(vertex) + (depth == SssPointDepth::fixed ? 1 : 3);
 }
 
-template <SssVertex kVertex>
+template <SssVertex kVertex, SssPointDepth kDepth>
 struct PointShader : SssGeometryShader<kVertex, pipeline::GeometryOutput::points, 64> {
   template <class S>
   static void run(S& s, const SssUniforms& u) {
@@ -39,8 +42,11 @@ struct PointShader : SssGeometryShader<kVertex, pipeline::GeometryOutput::points
             const Vec3<F> b = pattern_place(pattern, i);
             place(t, c, values, b, out);
             const Vec2<F> at = screen_place(c, b);
-            const F z = b.x * c[0].z + b.y * c[1].z + b.z * c[2].z;
-            set_depth_test<I>(u, t, at, z, out);
+            F z = b.x * c[0].z + b.y * c[1].z + b.z * c[2].z;
+            if constexpr (kDepth == SssPointDepth::fixed)
+              z = max(z - t.depth_bias, F(0.0f));
+            else
+              set_depth_test<I>(u, t, at, z, out);
             s.emit(left, to_clip(u, at, z), std::span<const F>(out));
             s.count(SssCounters::sss_point_samples, left);
           });
@@ -53,8 +59,8 @@ struct PointShader : SssGeometryShader<kVertex, pipeline::GeometryOutput::points
   using Values = std::array<std::array<F, kCount>,
                             3>;  ///< attributes of the three vertices, in the order of attribute_place
   template <class F>
-  using Scalars = std::array<F, static_cast<std::size_t>(point_scalars(kVertex))>;
-  static constexpr auto kWeight = static_cast<std::size_t>(point_scalars(kVertex) - 3);
+  using Scalars = std::array<F, static_cast<std::size_t>(point_scalars(kVertex, kDepth))>;
+  static constexpr auto kWeight = static_cast<std::size_t>(weight_scalar(kVertex));
 
   template <class S, class F>
   static void read_attributes(S& s, const SssCorner<F> (&c)[3], Values<F>& values) {
@@ -109,7 +115,7 @@ struct PointShader : SssGeometryShader<kVertex, pipeline::GeometryOutput::points
   }
 };
 
-template <SssVertex kVertex>
+template <SssVertex kVertex, SssPointDepth kDepth>
 struct PointShadingShader {
   using Uniforms = SssUniforms;
   template <class S>
@@ -126,11 +132,15 @@ struct PointShadingShader {
       point.site.du_dy = s.flat_attr(kAt + 2);
       point.site.dv_dy = s.flat_attr(kAt + 3);
     }
-    constexpr int kWeight = point_scalars(kVertex) - 3;
-    const F weight = s.flat_attr(kWeight), depth = s.flat_attr(kWeight + 1);
-    const auto sample = to_int(s.flat_attr(kWeight + 2));
-    const auto seen = s.active() & !(depth > s.load_image(kSssDepthSlot, s.pixel_x(), s.pixel_y(), sample).x);
-    s.discard(!seen);
+    constexpr int kWeight = weight_scalar(kVertex);
+    const F weight = s.flat_attr(kWeight);
+    auto seen = s.active();
+    if constexpr (kDepth == SssPointDepth::shader) {
+      const F depth = s.flat_attr(kWeight + 1);
+      const auto sample = to_int(s.flat_attr(kWeight + 2));
+      seen = seen & !(depth > s.load_image(kSssDepthSlot, s.pixel_x(), s.pixel_y(), sample).x);
+      s.discard(!seen);
+    }
     s.branch(kShadeBlock, seen, [&]() HWY_ATTR {
       const Vec3<F> c = light_point(s, u, point, kVertex, seen);
       s.output(0, {c.x * weight, c.y * weight, c.z * weight, weight});
@@ -138,11 +148,26 @@ struct PointShadingShader {
   }
 };
 
+template <SssPointDepth kDepth>
 void run_points(SssVertex vertex, pipeline::GeometryBatch& b, const void* u) {
-  with_vertex(vertex, [&](auto v) HWY_ATTR { lanes::run_geometry_shader<PointShader<v()>>(b, u); });
+  with_vertex(vertex, [&](auto v) HWY_ATTR { lanes::run_geometry_shader<PointShader<v(), kDepth>>(b, u); });
 }
+template <SssPointDepth kDepth>
 void run_point_shading(SssVertex vertex, pipeline::FragmentBatch& b, const void* u) {
-  with_vertex(vertex, [&](auto v) HWY_ATTR { lanes::run_fragment_shader<PointShadingShader<v()>>(b, u); });
+  with_vertex(vertex,
+              [&](auto v) HWY_ATTR { lanes::run_fragment_shader<PointShadingShader<v(), kDepth>>(b, u); });
+}
+void run_tested_points(SssVertex vertex, pipeline::GeometryBatch& b, const void* u) {
+  run_points<SssPointDepth::shader>(vertex, b, u);
+}
+void run_tested_point_shading(SssVertex vertex, pipeline::FragmentBatch& b, const void* u) {
+  run_point_shading<SssPointDepth::shader>(vertex, b, u);
+}
+void run_plain_points(SssVertex vertex, pipeline::GeometryBatch& b, const void* u) {
+  run_points<SssPointDepth::fixed>(vertex, b, u);
+}
+void run_plain_point_shading(SssVertex vertex, pipeline::FragmentBatch& b, const void* u) {
+  run_point_shading<SssPointDepth::fixed>(vertex, b, u);
 }
 
 }  // namespace hwsim::algos::HWY_NAMESPACE
@@ -150,20 +175,25 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace hwsim::algos {
-HWY_EXPORT(run_points);
-HWY_EXPORT(run_point_shading);
+HWY_EXPORT(run_tested_points);
+HWY_EXPORT(run_tested_point_shading);
+HWY_EXPORT(run_plain_points);
+HWY_EXPORT(run_plain_point_shading);
 
 namespace {
 
 constexpr int kPointsMax = 256;  // the largest budget of a triangle
 
 /// By limit: programs are shared, so there is one for each.
-template <SssVertex kVertex>
+template <SssVertex kVertex, SssPointDepth kDepth>
 std::vector<pipeline::GeometryProgram> describe_points() {
   pipeline::GeometryProgram program =
-      pipeline::HWY_NAMESPACE::describe_geometry_shader<HWY_NAMESPACE::PointShader<kVertex>>(
+      pipeline::HWY_NAMESPACE::describe_geometry_shader<HWY_NAMESPACE::PointShader<kVertex, kDepth>>(
           "sss_points", [](pipeline::GeometryBatch& b, const void* u) {
-            HWY_DYNAMIC_DISPATCH(run_points)(kVertex, b, u);
+            if constexpr (kDepth == SssPointDepth::fixed)
+              HWY_DYNAMIC_DISPATCH(run_plain_points)(kVertex, b, u);
+            else
+              HWY_DYNAMIC_DISPATCH(run_tested_points)(kVertex, b, u);
           });
   std::vector<pipeline::GeometryProgram> all;
   for (program.max_vertices = 1; program.max_vertices <= kPointsMax; ++program.max_vertices)
@@ -171,31 +201,48 @@ std::vector<pipeline::GeometryProgram> describe_points() {
   return all;
 }
 
-template <SssVertex kVertex>
+template <SssVertex kVertex, SssPointDepth kDepth>
 pipeline::FragmentProgram describe_shading(bool extended) {
   SssUniforms uniforms;
   uniforms.lighting.extended = extended;
   pipeline::FragmentProgram program =
-      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::PointShadingShader<kVertex>>(
+      pipeline::HWY_NAMESPACE::describe_fragment_shader<HWY_NAMESPACE::PointShadingShader<kVertex, kDepth>>(
           "sss_point",
           [](pipeline::FragmentBatch& b, const void* u) {
-            HWY_DYNAMIC_DISPATCH(run_point_shading)(kVertex, b, u);
+            if constexpr (kDepth == SssPointDepth::fixed)
+              HWY_DYNAMIC_DISPATCH(run_plain_point_shading)(kVertex, b, u);
+            else
+              HWY_DYNAMIC_DISPATCH(run_tested_point_shading)(kVertex, b, u);
           },
           uniforms);
-  program.varying_scalars = HWY_NAMESPACE::point_scalars(kVertex);
+  program.varying_scalars = HWY_NAMESPACE::point_scalars(kVertex, kDepth);
   return program;
 }
-}  // namespace
 
-const pipeline::GeometryProgram& sss_points_program(SssVertex vertex, int points_max) {
-  static const auto programs = for_each_vertex([](auto v) { return describe_points<v()>(); });
+template <SssPointDepth kDepth>
+const pipeline::FragmentProgram& shading_program(SssVertex vertex, bool extended) {
+  static const auto plain = for_each_vertex([](auto v) { return describe_shading<v(), kDepth>(false); });
+  static const auto more = for_each_vertex([](auto v) { return describe_shading<v(), kDepth>(true); });
+  return (extended ? more : plain)[static_cast<std::size_t>(vertex)];
+}
+
+template <SssPointDepth kDepth>
+const pipeline::GeometryProgram& points_program(SssVertex vertex, int points_max) {
+  static const auto programs = for_each_vertex([](auto v) { return describe_points<v(), kDepth>(); });
   return programs[static_cast<std::size_t>(vertex)].at(static_cast<std::size_t>(points_max) - 1);
 }
 
-const pipeline::FragmentProgram& sss_point_shading_program(SssVertex vertex, bool extended) {
-  static const auto plain = for_each_vertex([](auto v) { return describe_shading<v()>(false); });
-  static const auto more = for_each_vertex([](auto v) { return describe_shading<v()>(true); });
-  return (extended ? more : plain)[static_cast<std::size_t>(vertex)];
+}  // namespace
+
+const pipeline::GeometryProgram& sss_points_program(SssVertex vertex, SssPointDepth depth, int points_max) {
+  return depth == SssPointDepth::fixed ? points_program<SssPointDepth::fixed>(vertex, points_max)
+                                       : points_program<SssPointDepth::shader>(vertex, points_max);
+}
+
+const pipeline::FragmentProgram& sss_point_shading_program(SssVertex vertex, SssPointDepth depth,
+                                                           bool extended) {
+  return depth == SssPointDepth::fixed ? shading_program<SssPointDepth::fixed>(vertex, extended)
+                                       : shading_program<SssPointDepth::shader>(vertex, extended);
 }
 
 }  // namespace hwsim::algos

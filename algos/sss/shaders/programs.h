@@ -83,22 +83,28 @@ struct SssUniforms {
   int capacity_nodes = 0, node_words = 4, list_nodes_max = 32;
   bool conservative_raster = false;
 
-  int mark_slot = -1;  ///< image of the frame's samples whose triangle was sampled; -1: none
+  int mark_slot = -1;  ///< image of the frame's samples whose triangle was sampled, before that of the
+                       ///< samples themselves; -1: none
   bool by_place() const { return node_words == kSssPlaceNodeWords; }
 };
 
 /// Samples of the frame below: shaders go through them one by one.
 inline constexpr int kSssBaseSamples = 8;
+/// And positions at which coverage is found, where the base has more than samples.
+inline constexpr int kSssCoverageSamples = 32;
 
 /// Image slots of the passes that sample.
 inline constexpr int kSssDepthSlot = 0, kSssShadowSlot = 1;
 /// Slots of composites: the frame, resolved or, with marks, multisampled; then what was accumulated.
 inline constexpr int kSssFrameSlot = 0, kSssSumSlot = 1;
 
-// Points from a geometry shader
-const pipeline::GeometryProgram& sss_points_program(SssVertex vertex, int points_max);
+/// Who tests the depth of points from a geometry shader: the hardware, each of the frame's samples, or their
+/// shader, one of them.
+enum class SssPointDepth : std::uint8_t { fixed, shader };
+const pipeline::GeometryProgram& sss_points_program(SssVertex vertex, SssPointDepth depth, int points_max);
 /// Here and below, `extended` is the lighting's.
-const pipeline::FragmentProgram& sss_point_shading_program(SssVertex vertex, bool extended);
+const pipeline::FragmentProgram& sss_point_shading_program(SssVertex vertex, SssPointDepth depth,
+                                                           bool extended);
 
 // Points from a compute shader. Buffers: triangles, vertices, groups, sums.
 inline constexpr int kSssTriangleBuffer = 0, kSssVertexBuffer = 1, kSssGroupBuffer = 2, kSssSumBuffer = 3;
