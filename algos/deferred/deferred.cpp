@@ -4,6 +4,7 @@
 
 #include "algos/base/frame_parts.h"
 #include "algos/base/lost_light.h"
+#include "algos/base/prepass.h"
 #include "algos/base/shaders/post.h"
 #include "algos/deferred/options.h"
 #include "algos/deferred/shaders/programs.h"
@@ -19,7 +20,7 @@ struct GBuffer {
   ImageId depth, lit;
   int samples = 1;           ///< samples of a layer
   MulticastPattern pattern;  ///< layers of eight samples, or none
-  bool centroid = true, alpha_to_coverage = false;
+  bool centroid = true, alpha_to_coverage = false, prepass = false;
 
   int layers() const { return std::max(1, static_cast<int>(pattern.viewports.size())); }
 };
@@ -42,6 +43,7 @@ GBuffer add_gbuffer(FrameGraph& graph, const FrameRequest& request, const Deferr
   g.pattern = multicast_layers(request, options.samples, options.emulate);
   g.samples = options.samples / g.layers();
   g.centroid = options.centroid;
+  g.prepass = options.prepass;
   const auto image = [&](std::string_view name, Format format) {
     return graph.add_image({std::string(name), format, graph.width(), graph.height(), g.samples, g.layers()});
   };
@@ -59,6 +61,7 @@ DrawBatch gbuffer_batch(const FrameParts& parts, const GBuffer& g, const std::ve
   target.centroid = g.centroid;
   target.layers = g.pattern;
   batch.state = opaque_state(target);
+  if (g.prepass) draw_where_equal(batch.state);
   batch.fragment =
       &gbuffer_program(g.layout->encoding, parts.full_varyings, alpha_test, parts.lighting.extended);
   batch.fragment_uniforms = std::make_shared<GBufferUniforms>(
@@ -72,6 +75,7 @@ void add_gbuffer_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer&
   std::vector<ImageId> cleared = g.attachments;
   cleared.push_back(g.depth);
   graph.add_clear("clear", std::move(cleared));
+  if (g.prepass) add_prepass(graph, parts, "", lit_target(graph, g));
   Pass& pass = graph.add_pass("gbuffer", PassKind::draw);
   pass.samples = g.samples;
   pass.viewports = g.pattern.viewports;
@@ -80,7 +84,7 @@ void add_gbuffer_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer&
   pass.batches.push_back(gbuffer_batch(parts, g, parts.draws.opaque, false));
   add_opaque_separate(pass, parts, surface_inputs(parts), gbuffer_batch(parts, g, {}, false));
   if (parts.draws.mask.empty()) return;
-  DrawBatch batch = gbuffer_batch(parts, g, parts.draws.mask, !g.alpha_to_coverage);
+  DrawBatch batch = gbuffer_batch(parts, g, parts.draws.mask, !g.alpha_to_coverage && !g.prepass);
   batch.state.coverage.alpha_to_coverage = batch.state.coverage.alpha_dither = g.alpha_to_coverage;
   pass.batches.push_back(std::move(batch));
 }
@@ -190,23 +194,48 @@ void finish(FrameGraph& graph, const FrameParts& parts, const GBuffer& g) {
   add_full_screen(graph, "present", {g.lit}, output, scale_program(), std::make_shared<ScaleUniforms>());
 }
 
-/// Coverage comes from the first target's alpha, which other layouts use for a value of their own.
-void check_alpha_to_coverage(const GBuffer& g) {
-  if (!g.alpha_to_coverage || g.layout->encoding == GBufferEncoding::compact) return;
+[[noreturn]] void refuse(std::string message, std::string help) {
   Diagnostic error;
   error.code = "T003";
-  error.message = "alpha_to_coverage = on with layout = " + std::string(g.layout->id) + ", must be gb_agaa16";
-  error.help = "the other layouts keep a value of their own where alpha would stand";
+  error.message = std::move(message);
+  error.help = std::move(help);
   throw InputError(std::move(error), ExitStatus::usage);
 }
 
-FrameGraph build_deferred(const FrameRequest& request, const DeferredOptions& options) {
+/// Coverage comes from the first target's alpha, which other layouts use for a value of their own.
+void check_alpha_to_coverage(const GBuffer& g) {
+  if (!g.alpha_to_coverage) return;
+  if (g.layout->encoding != GBufferEncoding::compact)
+    refuse("alpha_to_coverage = on with layout = " + std::string(g.layout->id) + ", must be gb_agaa16",
+           "the other layouts keep a value of their own where alpha would stand");
+  if (g.prepass)
+    refuse("alpha_to_coverage = on with prepass = on",
+           "a pass of depth alone has no color whose alpha would be coverage: one of both must be off");
+}
+
+/// With one sample a pixel the tiles write what is shown.
+void add_light_tiles(FrameGraph& graph, const FrameParts& parts, const GBuffer& g) {
+  if (g.samples > 1)
+    refuse("lighting = tiles with samples = " + std::to_string(g.samples) + ", must be 1",
+           "deferred_simple_complex:lighting=compute lights several samples in tiles");
+  Pass& pass =
+      add_frame_compute(graph, "light_tiles", tile_light_program(g.layout->encoding, parts.lighting.extended),
+                        make_uniforms(graph, parts, g));
+  pass.targets = {g.lit};
+  bind_gbuffer(pass, parts, g);
+}
+
+FrameGraph build_deferred(const FrameRequest& request, const EverySampleOptions& options) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const FrameParts parts = prepare_gbuffer_frame(graph, request);
-  const GBuffer g = add_gbuffer(graph, request, options);
+  const GBuffer g = add_gbuffer(graph, request, options.gbuffer);
   add_gbuffer_pass(graph, parts, g);
-  Pass& light = add_light_pass(graph, parts, g, "light", make_uniforms(graph, parts, g));
-  light.state.raster.sample_rate = g.samples > 1;
+  if (options.lighting == SampleLighting::compute_tiles) {
+    add_light_tiles(graph, parts, g);
+  } else {
+    Pass& light = add_light_pass(graph, parts, g, "light", make_uniforms(graph, parts, g));
+    light.state.raster.sample_rate = g.samples > 1;
+  }
   finish(graph, parts, g);
   return graph;
 }
@@ -242,11 +271,16 @@ void describe_gbuffer(OptionList& list, DeferredOptions& o, int least_samples) {
   describe_centroid(list, o.centroid);
   list.choice("emulate", o.emulate, kEmulateChoices,
               "beyond 8 samples: layers of 8, by viewport multicast, or native samples");
+  describe_prepass(list, o.prepass);
 }
 
 }  // namespace
 
-void describe(OptionList& list, DeferredOptions& o) { describe_gbuffer(list, o, 1); }
+void describe(OptionList& list, EverySampleOptions& o) {
+  describe_gbuffer(list, o.gbuffer, 1);
+  list.choice("lighting", o.lighting, "full_screen|tiles",
+              "a full-screen pass, or 16x16 compute tiles that cull lights: with samples=1");
+}
 
 void describe(OptionList& list, SimpleComplexOptions& o) {
   describe_gbuffer(list, o.gbuffer, 2);
@@ -263,7 +297,7 @@ void describe(OptionList& list, SimpleComplexOptions& o) {
 
 namespace {
 
-std::vector<Diagnostic> notes(const DeferredOptions& options, const DrawnFrame& frame) {
+std::vector<Diagnostic> gbuffer_notes(const DeferredOptions& options, const DrawnFrame& frame) {
   SurfaceRecord record;
   record.unlit_mark = true;
   const GBufferLayout& layout = gbuffer_layouts()[static_cast<std::size_t>(options.layout)];
@@ -273,8 +307,11 @@ std::vector<Diagnostic> notes(const DeferredOptions& options, const DrawnFrame& 
                         ? "forward techniques keep it off"
                         : "layout=gb_sbaa40 keeps the color of emission, forward techniques all of it");
 }
+std::vector<Diagnostic> notes(const EverySampleOptions& options, const DrawnFrame& frame) {
+  return gbuffer_notes(options.gbuffer, frame);
+}
 std::vector<Diagnostic> simple_complex_notes(const SimpleComplexOptions& options, const DrawnFrame& frame) {
-  return notes(options.gbuffer, frame);
+  return gbuffer_notes(options.gbuffer, frame);
 }
 
 }  // namespace

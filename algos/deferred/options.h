@@ -15,8 +15,17 @@ struct DeferredOptions {
   DeferredLayout layout = DeferredLayout::gb_lauritzen;
   bool centroid = true;
   Emulate emulate = Emulate::automatic;
+  bool prepass = false;
 };
-void describe(OptionList& list, DeferredOptions& o);
+
+/// How the technique that lights every sample does so.
+enum class SampleLighting : std::uint8_t { full_screen, compute_tiles };
+
+struct EverySampleOptions {
+  DeferredOptions gbuffer;
+  SampleLighting lighting = SampleLighting::full_screen;
+};
+void describe(OptionList& list, EverySampleOptions& o);
 
 enum class DeferredLighting : std::uint8_t { stencil, compute_tiles };
 

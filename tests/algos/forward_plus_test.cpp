@@ -207,13 +207,37 @@ TEST(Prepass, ChangesTheWorkAndTheImageOnlyWhereSurfacesCoincide) {
   for (const char* scene : {"sponza_hall:bays=4", "foliage"}) {
     FrameRequest request = lit(scene, 10);
     request.features = every_feature(8);
-    for (const std::string name : {"none", "msaa4x", "msaa32x"}) {
+    for (const std::string name : {"none", "msaa4x", "msaa32x", "deferred"}) {
       const Emulation plain = run(request, name), first = run(request, name + ":prepass=on");
       EXPECT_LE(different_pixels(plain.color, first.color), kCoincidentPixels) << name << " of " << scene;
-      const std::string pass = "forward";
+      const std::string pass = name == "deferred" ? "gbuffer" : "forward";
       EXPECT_LT(total(pass_of(first, pass)).ps.invocations, total(pass_of(plain, pass)).ps.invocations)
           << name << " of " << scene;
       EXPECT_GT(total(pass_of(first, "prepass")).zrop.written_samples, 0u);
+    }
+  }
+}
+
+TEST(TiledDeferred, ShowsWhatAFullScreenPassShowsAndLightsLess) {
+  const FrameRequest request = lit("sponza_hall:bays=4", 200, 0.05);
+  const Emulation tiles = run(request, "deferred:samples=1,lighting=tiles");
+  const Emulation screen = run(request, "deferred:samples=1");
+  EXPECT_EQ(different_pixels(tiles.color, screen.color), 0u);
+  const PassCounters t = total(pass_of(tiles, "light_tiles")), s = total(pass_of(screen, "light"));
+  EXPECT_EQ(t.technique[BaseCounters::lit_samples], static_cast<std::uint64_t>(kWidth * kHeight));
+  EXPECT_LT(t.shader.alu_lane_ops, s.shader.alu_lane_ops / 4);
+}
+
+TEST(TiledDeferred, RefusesWhatItCannotDo) {
+  for (const char* impossible :
+       {"deferred:samples=4,lighting=tiles",
+        "deferred_simple_complex:layout=gb_agaa16,alpha_to_coverage=on,prepass=on"}) {
+    const FrameRequest request = lit("sponza_hall:bays=4", 1);
+    try {
+      build_frame(parse_technique(impossible), request);
+      FAIL() << impossible;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.diagnostics().front().code, "T003") << impossible;
     }
   }
 }

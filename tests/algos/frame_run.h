@@ -21,8 +21,9 @@ inline std::vector<std::string> technique_variants() {
   for (const algos::TechniqueInfo& t : algos::techniques()) all.emplace_back(t.id);
   for (const char* variant :
        {"ssaa4x:variant=accumulate", "ssaa4x:variant=sample_rate", "msaa4x:centroid=off",
-        "deferred:samples=1", "deferred_simple_complex:lighting=compute", "agaa:msaa=32",
-        "csaa:mode=16xq,orphans=drop", "none+fxaa:gather=off", "forward_plus:samples=4", "msaa4x:prepass=on",
+        "deferred:samples=1", "deferred:samples=1,lighting=tiles,prepass=on",
+        "deferred_simple_complex:lighting=compute", "agaa:msaa=32", "csaa:mode=16xq,orphans=drop",
+        "none+fxaa:gather=off", "forward_plus:samples=4", "msaa4x:prepass=on",
         "sss_cs:atomics=integer,rest=frame", "sss_ppll:node_bytes=32",
         "agaa:c=4,ndf=sggx,brdf=ggx,accumulate=atomics"})
     all.emplace_back(variant);
