@@ -161,7 +161,8 @@ struct CmaaCombineShader {
     using I = typename S::I;
     using M = typename S::M;
     const I x = s.pixel_x() + s.pixel_x(), y = s.pixel_y() + s.pixel_y();
-    const std::array<I, 4> above = four_texels(s, x, y - I(1)), before = four_texels(s, x - I(1), y);
+    const std::array<I, 4> above = four_texels(s, x, y, 0, -1);
+    const std::array<I, 4> before = four_texels(s, x, y, -1, 0);
     const I last = to_int(s.load_image(0, x + I(1), y + I(1), I(0)).x);
     const M has_above = y > I(0), has_before = x > I(0);
     const auto fresh = [](I bits) HWY_ATTR { return max(bits - I(kFreshEdges), I(0)); };

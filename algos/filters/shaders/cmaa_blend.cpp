@@ -44,7 +44,7 @@ class CmaaBlend {
     for (int q = 0; q < 4; ++q) {
       const int i = 2 * (q & 1), j = 2 * (q >> 1);
       const I x = x0_ + I(i - 1), y = y0_ + I(j - 1);
-      const std::array<I, 4> four = four_texels(s_, x, y);
+      const std::array<I, 4> four = four_texels(s_, x0_, y0_, i - 1, j - 1);
       for (int p = 0; p < 4; ++p)
         window_[static_cast<std::size_t>(j + (p >> 1))][static_cast<std::size_t>(i + (p & 1))] =
             select(inside(x + I(p & 1), y + I(p >> 1)), four[static_cast<std::size_t>(p)], I(0));

@@ -28,14 +28,11 @@ typename S::M bits_are(typename S::I bits, int mask, int set) {
   return (bits & typename S::I(mask)) == typename S::I(set);
 }
 
-/// The texels (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1) of an image of small whole numbers.
+/// The texels from (x + dx, y + dy) on, two by two, of an image of small whole numbers.
 template <class S>
-std::array<typename S::I, 4> four_texels(S& s, typename S::I x, typename S::I y) {
-  using I = typename S::I;
-  std::array<I, 4> t{};
-  for (int p = 0; p < 4; ++p)
-    t[static_cast<std::size_t>(p)] = to_int(s.load_image(0, x + I(p & 1), y + I(p >> 1), I(0)).x);
-  return t;
+std::array<typename S::I, 4> four_texels(S& s, typename S::I x, typename S::I y, int dx, int dy) {
+  const auto t = s.gather_image(0, 0, x, y, dx, dy);
+  return {to_int(t.t00), to_int(t.t10), to_int(t.t01), to_int(t.t11)};
 }
 
 /// To pixel p of the invocation's four.
