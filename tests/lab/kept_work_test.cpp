@@ -28,9 +28,8 @@ TEST(KeptWork, IsWhatThisVersionEmulates) {
   Observer silent;
   const cost_models::TraceSource traces = emulated_traces(2, cache, silent);
   std::size_t compared = 0;
-  for (const char* run_begins :
-       {"sbaa_merge:n=2,msaa=8 of dragon", "agaa:c=2,msaa=8 of metal",
-        "sss_cs of car_body:mouldings=1", "axaa of sponza_hall"})
+  for (const char* run_begins : {"sbaa_merge:n=2,msaa=8 of dragon", "agaa:c=2,msaa=8 of metal",
+                                 "sss_cs of car_body:mouldings=1", "axaa of sponza_hall"})
     for (const auto& [run, trace] : kept.traces) {
       if (run.to_string().rfind(run_begins, 0) != 0) continue;
       ++compared;
