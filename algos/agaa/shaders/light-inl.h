@@ -339,6 +339,14 @@ class AggregateLight {
     return matte;
   }
 
+  /// Ambient light knows no lobe: it takes the specular color without the lobe's energy.
+  lanes::Surface<F> by_color() const {
+    lanes::Surface<F> surface = surface_;
+    if (u_.lighting.extended && u_.aggregate.most_energy > 0.0f)
+      surface.specular = surface_.specular * (F(1.0f) / max(chroma_scale_, F(1e-3f)));
+    return surface;
+  }
+
   /// Lobes as wide as the directions to a near light vary over the aggregate make them.
   void widen(const pipeline::PointLight& light, const Vec3<F>& l, lanes::Surface<F>& surface,
              DiffuseLobe<F>& lobe) const {
@@ -353,7 +361,7 @@ class AggregateLight {
 
   Vec3<F> light() {
     const pipeline::LightingUniforms& lights = u_.lighting;
-    Vec3<F> sum = surface_.emissive + lanes::ambient_light(lights, surface_);
+    Vec3<F> sum = surface_.emissive + lanes::ambient_light(lights, by_color());
     s_.loop(lanes::kDirectionalBlock, lights.directional_count, mask_, [&](int i) HWY_ATTR {
       const auto& light = lights.directional[static_cast<std::size_t>(i)];
       F visible(1.0f);
