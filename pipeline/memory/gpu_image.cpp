@@ -5,6 +5,7 @@
 #include "pipeline/base/parallel.h"
 #include "pipeline/image/image.h"
 #include "pipeline/memory/coverage_map.h"
+#include "pipeline/memory/packed_samples.h"
 #include "pipeline/simd/codec-inl.h"
 #include "pipeline/simd/scalar_lane-inl.h"
 
@@ -131,7 +132,7 @@ void GpuImage::expand_all(int jobs) {
 void read_texel(const GpuImage& image, int x, int y, int sample, float rgba[4]) {
   ScalarI words[4] = {0, 0, 0, 0};
   for (int word = 0; word < image.words; ++word)
-    words[word] = static_cast<std::int32_t>(image.texels[image.word_index(x, y, sample, word)]);
+    words[word] = static_cast<std::int32_t>(held_word(image, x, y, sample, word));
   const Vec4<ScalarF> c = decode_texel<ScalarF, ScalarI>(image.format, words, srgb_decode_table().data());
   rgba[0] = c.x.v;
   rgba[1] = c.y.v;

@@ -1,11 +1,12 @@
 // Multisampled color while shaders read it: one texel for each pixel of one color, all samples of the others.
+#include "pipeline/memory/packed_samples.h"
+
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <numeric>
 
 #include "pipeline/base/parallel.h"
-#include "pipeline/memory/gpu_image.h"
 
 namespace hwsim::pipeline {
 namespace {
@@ -47,6 +48,16 @@ void unpack_quad(GpuImage& image, int block, int quad, const std::uint32_t* from
 }
 
 }  // namespace
+
+std::uint32_t held_word(const GpuImage& image, int x, int y, int sample, int word) {
+  if (image.packed.quad_start.empty() || sample == 0)
+    return image.texels[image.word_index(x, y, sample, word)];
+  const int lane = lane_of(x & 7, y & 7), quad = (image.block_index(x, y) * kBlockLanes + lane) / kQuadLanes;
+  const std::int32_t start = image.packed.quad_start[static_cast<std::size_t>(quad)];
+  if (start == PackedSamples::kOneColor) return image.texels[image.word_index(x, y, 0, word)];
+  const int place = ((sample - 1) * image.words + word) * kQuadLanes + lane % kQuadLanes;
+  return image.packed.words[static_cast<std::size_t>(start + place)];
+}
 
 void GpuImage::release_further_samples(int row) {
   const std::size_t begin = further_begin + static_cast<std::size_t>(row * blocks_x) * further_stride;

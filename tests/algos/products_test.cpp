@@ -165,9 +165,9 @@ TEST(ProductScene, EveryPartActsOnTheScene) {
   const Emulation plain = run_checked(scene, "none", every_feature(8));
   for (const algos::TechniqueInfo& t : algos::techniques()) {
     if (t.id == "none") continue;
-    EXPECT_NE(difference(plain.color, run_checked(scene, std::string(t.id), every_feature(8)).color, "image"),
-              "")
-        << t.id;
+    // At one sample it shows what `none` does.
+    const std::string text = t.id == "forward_plus" ? "forward_plus:samples=4" : std::string(t.id);
+    EXPECT_NE(difference(plain.color, run_checked(scene, text, every_feature(8)).color, "image"), "") << text;
   }
 }
 

@@ -1,11 +1,11 @@
 // Multisampled color while shaders read it: packed samples are those of the image, and come back.
+#include "pipeline/memory/packed_samples.h"
+
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <random>
 #include <vector>
-
-#include "pipeline/memory/gpu_image.h"
 
 // One vector target is enough here: without foreach_target.
 #include "pipeline/shade/image_access-inl.h"
@@ -17,10 +17,6 @@ namespace lanes = HWY_NAMESPACE;
 constexpr int kWidth = 45, kHeight = 21, kSamples = 4;
 
 using Words = std::vector<std::uint32_t>;
-
-std::uint32_t held(const GpuImage& image, int x, int y, int sample, int word) {
-  return image.texels[image.word_index(x, y, sample, word)];
-}
 
 /// Pixels of one color and of several, some of the former written at sample 0 alone; `mixed_share` of all
 /// pixels lie in tiles that mix. Returns the true words, pixel by pixel, sample by sample.
@@ -68,13 +64,12 @@ Words read_as_shaders(const GpuImage& image) {
   return words;
 }
 
-Words read_whole(GpuImage& image) {
-  image.use_all(1);
+Words read_words(const GpuImage& image) {
   Words words;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x)
       for (int sample = 0; sample < kSamples; ++sample)
-        for (int word = 0; word < image.words; ++word) words.push_back(held(image, x, y, sample, word));
+        for (int word = 0; word < image.words; ++word) words.push_back(held_word(image, x, y, sample, word));
   return words;
 }
 
@@ -87,11 +82,13 @@ TEST(PackedSamples, ShadersReadWhatTheImageHolds) {
         image.begin_reads(pack, 2);
         EXPECT_EQ(!image.packed.quad_start.empty(), pack && mixed_share < 0.5);
         EXPECT_EQ(read_as_shaders(image), truth) << mixed_share << pack;
+        EXPECT_EQ(read_words(image), truth) << mixed_share << pack;
         image.begin_reads(pack, 1);  // by a later pass
         EXPECT_EQ(read_as_shaders(image), truth) << mixed_share << pack;
         image.end_reads(2);
         EXPECT_TRUE(image.packed.quad_start.empty());
-        EXPECT_EQ(read_whole(image), truth) << mixed_share << pack;
+        image.use_all(1);
+        EXPECT_EQ(read_words(image), truth) << mixed_share << pack;
       }
 }
 
