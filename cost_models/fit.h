@@ -14,7 +14,7 @@ struct FitOptions {
   int starts = 1;             ///< the first from the declared start, the others at random within the ranges
   std::uint64_t seed = 1;     ///< seed of the random starts
   int jobs = 1;               ///< the result does not depend on it
-  int max_iterations = 40;    ///< most iterations of each start
+  int max_iterations = 100;   ///< most iterations of each start
   bool convex_first = true;   ///< begin with a loss that sees far rows too
   double noise_log_sd = 0.1;  ///< a residual of this size costs as much as a parameter one prior sd away
   double robust_log = 0.2;    ///< residuals beyond this lose weight (Cauchy): rows that nothing explains
