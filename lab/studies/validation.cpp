@@ -65,6 +65,13 @@ Validation errors_of(std::shared_ptr<const FittedModel> model) {
   return validation;
 }
 
+/// The folder is replaced as a whole, so what says what lies in it is written, too.
+constexpr const char* kCalibratedReadme = R"(# Calibrated GPUs
+
+Written by `hwsim fit`, never by hand: `calibration.json` holds parameters, covariance and errors, each `.toml` the
+fitted values of one GPU. `manifest.json` marks the folder as hwsim's.
+)";
+
 void write_calibration(const FittedModel& model, const OutPlace& place) {
   OutPlace out = place;
   if (out.directory.empty()) out.directory = "calibrated";
@@ -75,6 +82,7 @@ void write_calibration(const FittedModel& model, const OutPlace& place) {
       write_file(directory.path(gpu.id + ".toml"), cost_models::calibrated_file(gpu, calibration));
   write_file(directory.path("calibration.json"), cost_models::to_json(calibration));
   write_file(directory.path("manifest.json"), "{\"written_by\": \"hwsim fit\"}\n");
+  write_file(directory.path("README.md"), kCalibratedReadme);
   directory.commit();
 }
 
