@@ -96,7 +96,9 @@ using lanes::LaneM;
 struct LaneBounds {
   LaneF nearest, farthest;
   LaneBounds() : nearest(1.0f), farthest(0.0f) {}  // an implicit constructor would not get the vector target
-  void add(LaneF z, LaneM mask) {
+  /// Inlined: g++ 12 loses what a call with emulated vectors writes (hwy/detect_targets.h,
+  /// HWY_BROKEN_EMU128).
+  HWY_INLINE void add(LaneF z, LaneM mask) {
     nearest = select(mask, min(nearest, z), nearest);
     farthest = select(mask, max(farthest, z), farthest);
   }
