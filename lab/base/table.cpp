@@ -102,7 +102,7 @@ std::vector<std::vector<std::string>> wrapped(const std::vector<TableCell>& row,
 
 std::vector<size_t> widths_of(const RowSource& rows) {
   std::vector<size_t> widths;
-  for (const Column& column : rows.columns) widths.push_back(display_columns(column.title));
+  for (const Column& column : rows.columns) widths.push_back(display_columns(printable_line(column.title)));
   if (!rows.each) return widths;
   rows.each([&](const std::vector<TableCell>& row) {
     const auto cells = wrapped(row, rows.columns);
@@ -162,7 +162,7 @@ void write_text(const RowSource& rows, const TakeText& take) {
   const std::vector<size_t> widths = widths_of(rows);
   std::vector<std::vector<std::string>> titles, rules;
   for (size_t i = 0; i < widths.size(); ++i) {
-    titles.push_back({rows.columns[i].title});
+    titles.push_back({printable_line(rows.columns[i].title)});  // a sweep's file names some of its columns
     rules.push_back({std::string(widths[i], '-')});
   }
   const auto line = [&](const std::vector<std::vector<std::string>>& cells) {
@@ -190,7 +190,7 @@ void write_csv(const RowSource& rows, const TakeText& take) {
 void write_markdown(const RowSource& rows, const TakeText& take) {
   std::string titles, rule;
   for (const Column& column : rows.columns) {
-    titles += "| " + escaped_for_markdown(column.title) + " ";
+    titles += "| " + escaped_for_markdown(printable_line(column.title)) + " ";
     rule += column.right ? "| ---: " : "| --- ";
   }
   take(titles + "|\n" + rule + "|\n");

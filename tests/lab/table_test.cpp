@@ -51,6 +51,14 @@ TEST(Table, ControlCharactersReachNoOutput) {
       << "JSON keeps what is text";
 }
 
+TEST(Table, ControlCharactersOfTitlesReachNoOutput) {
+  const Table table{{{"a\x1b[2J\x7f", "a\x1b[2J\x7f\n"}}, {{std::string("cell")}}};
+  for (const std::string& text : {to_text(table), to_csv(table), to_markdown(table)})
+    for (const char bad : {'\x1b', '\x7f'}) EXPECT_EQ(text.find(bad), std::string::npos) << text;
+  const std::string shown = to_text(table);
+  EXPECT_EQ(std::count(shown.begin(), shown.end(), '\n'), 3) << "title, rule, one row: " << shown;
+}
+
 TEST(Table, LineEndsInACellDoNotBreakTheTable) {
   const std::string text = to_text(one_cell("a\nb"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3) << "title, rule, one row: " << text;
