@@ -17,6 +17,20 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
+/// The tile of a pixel, and its lane there.
+struct TilePlace {
+  LaneI block, lane;
+};
+HWY_INLINE TilePlace place_in_tile(const GpuImage& image, LaneI x, LaneI y) {
+  const LaneI cx = min(max(x, LaneI(0)), LaneI(image.width - 1)),
+              cy = min(max(y, LaneI(0)), LaneI(image.height - 1));
+  const LaneI block = shift_right<3>(cy) * LaneI(image.blocks_x) + shift_right<3>(cx);
+  const LaneI lane = (cx & LaneI(1)) | shift_left<1>(cy & LaneI(1)) | shift_left<1>(cx & LaneI(2)) |
+                     shift_left<2>(cy & LaneI(2)) | shift_left<2>(cx & LaneI(4)) |
+                     shift_left<3>(cy & LaneI(4));
+  return {block, lane};
+}
+
 /// Where the words of texels lie: in GpuImage::texels, those of `in_packed` in GpuImage::packed.
 struct TexelWords {
   LaneI first, packed;
@@ -35,12 +49,7 @@ struct TexelWords {
 
 /// The place of a texel in its image.
 HWY_INLINE TexelWords texel_words(const GpuImage& image, LaneI x, LaneI y, LaneI sample) {
-  const LaneI cx = min(max(x, LaneI(0)), LaneI(image.width - 1)),
-              cy = min(max(y, LaneI(0)), LaneI(image.height - 1));
-  const LaneI block = shift_right<3>(cy) * LaneI(image.blocks_x) + shift_right<3>(cx);
-  const LaneI lane = (cx & LaneI(1)) | shift_left<1>(cy & LaneI(1)) | shift_left<1>(cx & LaneI(2)) |
-                     shift_left<2>(cy & LaneI(2)) | shift_left<2>(cx & LaneI(4)) |
-                     shift_left<3>(cy & LaneI(4));
+  const auto [block, lane] = place_in_tile(image, x, y);
   const LaneM none = LaneI(0) > LaneI(0);
   const LaneI words(image.words * kBlockLanes);
   if (!image.first_samples_apart) {
@@ -74,12 +83,7 @@ HWY_INLINE void track_texels(const ResourceView& resources, int slot, LaneI x, L
                              std::uint32_t lanes, int first_lane) {
   if (resources.tracker == nullptr || lanes == 0) return;
   const GpuImage& image = *resources.images[static_cast<std::size_t>(slot)];
-  const LaneI cx = min(max(x, LaneI(0)), LaneI(image.width - 1)),
-              cy = min(max(y, LaneI(0)), LaneI(image.height - 1));
-  const LaneI block = shift_right<3>(cy) * LaneI(image.blocks_x) + shift_right<3>(cx);
-  const LaneI lane = (cx & LaneI(1)) | shift_left<1>(cy & LaneI(1)) | shift_left<1>(cx & LaneI(2)) |
-                     shift_left<2>(cy & LaneI(2)) | shift_left<2>(cx & LaneI(4)) |
-                     shift_left<3>(cy & LaneI(4));
+  const auto [block, lane] = place_in_tile(image, x, y);
   const std::int32_t bytes = info(image.format).bytes;  // 64 texels of it are as many lines
   const LaneI line =
       LaneI(static_cast<std::int32_t>(resources.image_first_line[static_cast<std::size_t>(slot)])) +
