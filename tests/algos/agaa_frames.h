@@ -58,6 +58,16 @@ inline pipeline::Scene patches(const std::vector<Rectangle>& list) {
   return scene;
 }
 
+/// Half as wide as pixels, of two slopes in turn.
+inline pipeline::Scene slats(float slope) {
+  std::vector<Rectangle> list;
+  const float half_pixel = 0.03625f;
+  for (int i = -20; i < 20; ++i)
+    list.push_back({half_pixel * static_cast<float>(i), half_pixel * static_cast<float>(i + 1), 0,
+                    glm::vec3(0.5f), (i & 1) != 0 ? slope : -slope});
+  return patches(list);
+}
+
 struct Shot {
   std::shared_ptr<const pipeline::Scene> scene;
   std::string technique;

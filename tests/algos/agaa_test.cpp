@@ -360,16 +360,6 @@ TEST(Agaa, GrayStaysGray) {
   EXPECT_GT(partial, 10);
 }
 
-/// Half as wide as pixels, of two slopes in turn.
-pipeline::Scene slats(float slope) {
-  std::vector<Rectangle> list;
-  const float half_pixel = 0.03625f;
-  for (int i = -20; i < 20; ++i)
-    list.push_back({half_pixel * static_cast<float>(i), half_pixel * static_cast<float>(i + 1), 0,
-                    glm::vec3(0.5f), (i & 1) != 0 ? slope : -slope});
-  return patches(list);
-}
-
 // Seen and lit along the mean normal of slats: the lobe's density there times what the material reflects in
 // all, which does not grow with the normals' spread.
 TEST(Agaa, SpreadNormalsReflectNoMoreLight) {

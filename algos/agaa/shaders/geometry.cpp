@@ -140,7 +140,7 @@ struct GenerateShader {
     if (a.ndf == Ndf::lean) basis = pixel_basis<F>(a.rays, s.pixel_x(), s.pixel_y());
     encode_specular(surface.specular, r.luma, r.cb, r.cr);
     if (a.most_energy > 0.0f)
-      r.luma = r.luma * lobe_energy(max(surface.exponent, F(a.least_exponent))) * F(1.0f / a.most_energy);
+      scale_specular(a, lobe_energy(max(surface.exponent, F(a.least_exponent))), r.luma, r.cb, r.cr);
     set_shape(a, basis, surface, material.normal, r.luma, weight, r);
     r.luma = r.luma * weight;
     r.cb = r.cb * weight;

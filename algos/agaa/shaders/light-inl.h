@@ -52,8 +52,10 @@ class AggregateLight {
     surface_.albedo = r.albedo;
     surface_.emissive = {r.emissive, r.emissive, r.emissive};
     find_shape(r);
-    surface_.specular = decode_specular(r.luma, F(kNoChroma) + (r.cb - F(kNoChroma)) * chroma_scale_,
-                                        F(kNoChroma) + (r.cr - F(kNoChroma)) * chroma_scale_);
+    const F chroma_scale(
+        u_.aggregate.most_energy > 0.0f ? u_.aggregate.most_chroma_energy / u_.aggregate.most_energy : 1.0f);
+    surface_.specular = decode_specular(r.luma, F(kNoChroma) + (r.cb - F(kNoChroma)) * chroma_scale,
+                                        F(kNoChroma) + (r.cr - F(kNoChroma)) * chroma_scale);
     s_.uniform_branch(kLobeBlock, u_.diffuse != DiffuseFilter::off && !by_visible_normals(),
                       [&]() HWY_ATTR { lobe_ = diffuse_lobe(diffuse_length_); });
     return light();
@@ -246,17 +248,16 @@ class AggregateLight {
                               (u_.diffuse == DiffuseFilter::folded && u_.aggregate.ndf == Ndf::toksvig);
     const F longest(1.0f - 1.0f / 65535.0f);
     const float most = u_.aggregate.most_energy;
-    chroma_scale_ = F(1.0f);
     if (u_.aggregate.ndf == Ndf::toksvig && most <= 0.0f) return;  // GGX's lobes are normalized
     switch (u_.aggregate.ndf) {
-      case Ndf::toksvig:  // lengths multiply
-        if (spread_known && !stored)
+      case Ndf::toksvig:
+        own_scale_ = F(kOwnLobeScale * most);  // the color holds what the materials' lobes reflect
+        if (!u_.lighting.extended) return;
+        if (spread_known && !stored)  // lengths multiply
           own = max(own, exponent_of(min(length_ / max(diffuse_length_, F(1e-6f)), longest),
                                      u_.aggregate.gloss_reference) -
                              matte_);
-        // The luma holds what the materials' lobes reflect; chroma, of eight bits, follows the own one's.
-        own_scale_ = F(kOwnLobeScale * most);
-        chroma_scale_ = lobe_energy(own) * F(1.0f / most);
+        own_energy_ = lobe_energy(own) * F(1.0f / most);
         break;
       case Ndf::lean:  // variances add: the spread's as slopes have it at the mean normal's tilt
         if (spread_known) {
@@ -339,11 +340,15 @@ class AggregateLight {
     return matte;
   }
 
-  /// Ambient light knows no lobe: it takes the specular color without the lobe's energy.
+  /// Ambient light knows no lobe: it takes the specular color without the lobe's energy. Normals whose spread
+  /// is not known pass for a rough lobe of too much energy, and no reflectance exceeds 1.
   lanes::Surface<F> by_color() const {
     lanes::Surface<F> surface = surface_;
-    if (u_.lighting.extended && u_.aggregate.most_energy > 0.0f)
-      surface.specular = surface_.specular * (F(1.0f) / max(chroma_scale_, F(1e-3f)));
+    if (u_.lighting.extended && u_.aggregate.most_energy > 0.0f) {
+      const Vec3<F>& c = surface_.specular;
+      const F energy = max(max(own_energy_, F(1e-3f)), max(c.x, max(c.y, c.z)));
+      surface.specular = c * (F(1.0f) / energy);
+    }
     return surface;
   }
 
@@ -413,8 +418,8 @@ class AggregateLight {
   Vec3<F> from_center_{};       ///< the samples' mean place, from `place_` on the pixel's middle ray
   SymmetricMatrix<F> covariance_{};
   F length_{}, diffuse_length_{}, own_scale_{};
-  F chroma_scale_{};
-  F matte_{};  ///< what the stored exponent is beyond the lobe's
+  F own_energy_{};  ///< what the own lobe reflects, over the most that one does
+  F matte_{};       ///< what the stored exponent is beyond the lobe's
   DiffuseLobe<F> lobe_{};
   Lean<F> lean_{};
   Sggx<F> sggx_{};

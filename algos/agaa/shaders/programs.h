@@ -50,9 +50,10 @@ struct AggregateUniforms {
   /// The specular color is stored times what its lobe reflects in total, over this, the most that one does;
   /// 0: as it is.
   float most_energy = 0.0f;
-  int samples = 8;    ///< samples of all layers together
-  int code_bits = 1;  ///< bits of a sample's code; 0: there is one aggregate
-  int width = 1;      ///< width of the frame in pixels: addresses of the storage buffer
+  float most_chroma_energy = 2.0f;  ///< the same for its chroma, of eight bits; more is cut, hues stay
+  int samples = 8;                  ///< samples of all layers together
+  int code_bits = 1;                ///< bits of a sample's code; 0: there is one aggregate
+  int width = 1;                    ///< width of the frame in pixels: addresses of the storage buffer
 };
 
 struct VisibilityUniforms {

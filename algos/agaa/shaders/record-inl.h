@@ -127,6 +127,18 @@ F lobe_energy(F s) {
   return (s + F(8.0f)) / (s + F(1.0f));
 }
 
+/// The specular color times what its lobe reflects: linear, so that it averages to the true color whatever
+/// the lobes are. Chroma beyond its range loses saturation.
+template <class F>
+void scale_specular(const AggregateUniforms& u, F energy, F& luma, F& cb, F& cr) {
+  luma = luma * energy * F(1.0f / u.most_energy);
+  const F b = cb - F(kNoChroma), r = cr - F(kNoChroma);
+  const F scale = min(energy * F(1.0f / u.most_chroma_energy),
+                      F(0.5f * kChromaRange) / max(max(abs(b), abs(r)), F(1e-6f)));
+  cb = F(kNoChroma) + b * scale;
+  cr = F(kNoChroma) + r * scale;
+}
+
 /// What the vector's exponent is beyond the material's (docs/techniques/agaa.md#shading). `luma`: as
 /// stored.
 template <class F>
