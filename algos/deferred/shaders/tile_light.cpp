@@ -8,14 +8,13 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include "algos/base/shaders/gbuffer-inl.h"
+#include "algos/base/shaders/tile_waves-inl.h"
 #include "pipeline/shade/compute_lanes-inl.h"
 #include "pipeline/shade/count_fragment-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::algos::HWY_NAMESPACE {
 namespace lanes = pipeline::HWY_NAMESPACE;
-
-inline constexpr int kTilePx = 16;
 
 enum TileBlock : int {
   kBoundsBlock = 1,  // depth of each sample, for the tile's bounds
@@ -93,8 +92,8 @@ pipeline::ComputeProgram describe_tile_light(bool extended, void (*run)(pipeline
   program.ops[kTileClassifyBlock].group_memory = 1;
   program.ops[kOtherSampleBlock].group_memory = 1;
   program.block_count = s.block_count();
-  program.group_width = program.group_height = kTilePx;
-  program.group_memory_bytes = 4 * (1024 + kTilePx * kTilePx * 32);
+  program.group_width = program.group_height = kWaveTilePx;
+  program.group_memory_bytes = 4 * (1024 + kWaveTilePx * kWaveTilePx * 32);
   return program;
 }
 
@@ -118,7 +117,7 @@ template <GBufferEncoding kEncoding>
 class TileLighter {
  public:
   TileLighter(pipeline::GroupBatch& group, const DeferredUniforms& u)
-      : g_(group), u_(u), x0_(group.group_x * kTilePx), y0_(group.group_y * kTilePx) {}
+      : g_(group), u_(u), x0_(group.group_x * kWaveTilePx), y0_(group.group_y * kWaveTilePx) {}
 
   void run() {
     find_bounds();
@@ -128,24 +127,9 @@ class TileLighter {
   }
 
  private:
-  /// body(context) for each register of a wave of the group's pixels.
   template <class Body>
-  void for_each_pixel(Body&& body) {
-    for (int wave = 0; wave < kTilePx * kTilePx; wave += pipeline::kBatchLanes) {
-      for (int first = 0; first < pipeline::kBatchLanes; first += kVectorLanes) {
-        HWY_ALIGN std::int32_t x[kVectorLanes], y[kVectorLanes];
-        for (int lane = 0; lane < kVectorLanes; ++lane) {
-          const int i = wave + first + lane;  // waves are 8x8 quadrants of the tile
-          x[lane] = x0_ + pipeline::lane_x(i & 63) + 8 * (i >> 6 & 1);
-          y[lane] = y0_ + pipeline::lane_y(i & 63) + 8 * (i >> 7);
-        }
-        const LaneI px = lanes::load(x), py = lanes::load(y);
-        const LaneM valid = (px < LaneI(u_.width)) & (py < LaneI(u_.height));
-        ComputeLanes s(g_, first, px, py, LaneI(0), valid);
-        body(s);
-      }
-      lanes::end_wave(g_, pipeline::kBatchLanes);
-    }
+  HWY_INLINE void for_each_pixel(Body&& body) {
+    for_each_tile_register(g_, u_.width, u_.height, body);
   }
 
   void find_bounds() {
@@ -166,7 +150,8 @@ class TileLighter {
     glm::vec3 low(1e30f), high(-1e30f);
     for (int corner = 0; corner < 8; ++corner) {
       const float z = (corner & 4) != 0 ? near_ : far_;
-      const glm::vec2 xy = view_corner(x0_ + (corner & 1) * kTilePx, y0_ + (corner >> 1 & 1) * kTilePx, z);
+      const glm::vec2 xy =
+          view_corner(x0_ + (corner & 1) * kWaveTilePx, y0_ + (corner >> 1 & 1) * kWaveTilePx, z);
       const glm::vec3 p(xy.x, xy.y, z);
       low = glm::min(low, p);
       high = glm::max(high, p);
@@ -191,7 +176,7 @@ class TileLighter {
 
   // Invocation i tests lights i, i + 256, ...
   void charge_culling(int count) {
-    constexpr int kInvocations = kTilePx * kTilePx;
+    constexpr int kInvocations = kWaveTilePx * kWaveTilePx;
     for (int wave = 0; wave < kInvocations; wave += pipeline::kBatchLanes) {
       for (int first = 0; first < pipeline::kBatchLanes; first += kVectorLanes) {
         for (int begin = 0; begin < count; begin += kInvocations) {
@@ -275,7 +260,7 @@ class TileLighter {
   float near_ = 0.0f, far_ = 0.0f;  // view z of the tile's nearest and farthest sample
   std::vector<pipeline::PointLight> points_;
   int work_count_ = 0;
-  Item work_[kTilePx * kTilePx * 31];
+  Item work_[kWaveTilePx * kWaveTilePx * 31];
 };
 
 template <GBufferEncoding kEncoding>

@@ -7,6 +7,7 @@
 #define HWY_TARGET_INCLUDE "algos/forward/shaders/cull_lights.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include "algos/base/shaders/tile_waves-inl.h"
 #include "pipeline/shade/compute_lanes-inl.h"
 #include "pipeline/shade/count_fragment-inl.h"
 #include "pipeline/shade/lighting-inl.h"
@@ -14,6 +15,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace hwsim::algos::HWY_NAMESPACE {
 namespace lanes = pipeline::HWY_NAMESPACE;
+
+static_assert(kListTilePx == kWaveTilePx);
 
 enum CullBlock : int {
   kDepthBlock = 1,   // depth of each sample, for the tile's bounds
@@ -124,22 +127,10 @@ class TileCuller {
  private:
   void find_depths() {
     LaneBounds bounds;
-    for (int wave = 0; wave < kListTilePx * kListTilePx; wave += pipeline::kBatchLanes) {
-      for (int first = 0; first < pipeline::kBatchLanes; first += kVectorLanes) {
-        HWY_ALIGN std::int32_t x[kVectorLanes], y[kVectorLanes];
-        for (int lane = 0; lane < kVectorLanes; ++lane) {
-          const int i = wave + first + lane;  // waves are 8x8 quadrants of the tile
-          x[lane] = g_.group_x * kListTilePx + pipeline::lane_x(i & 63) + 8 * (i >> 6 & 1);
-          y[lane] = g_.group_y * kListTilePx + pipeline::lane_y(i & 63) + 8 * (i >> 7);
-        }
-        const LaneI px = lanes::load(x), py = lanes::load(y);
-        ComputeLanes s(g_, first, px, py, LaneI(0),
-                       (px < LaneI(u_.grid.width)) & (py < LaneI(u_.grid.height)));
-        gather_depths(s, u_, bounds);
-        s.branch(kReduceBlock, s.valid(), []() HWY_ATTR {});
-      }
-      lanes::end_wave(g_, pipeline::kBatchLanes);
-    }
+    for_each_tile_register(g_, u_.grid.width, u_.grid.height, [&](ComputeLanes& s) HWY_ATTR {
+      gather_depths(s, u_, bounds);
+      s.branch(kReduceBlock, s.valid(), []() HWY_ATTR {});
+    });
     HWY_ALIGN float nearest[kVectorLanes], farthest[kVectorLanes];
     lanes::store(bounds.nearest, nearest);
     lanes::store(bounds.farthest, farthest);
