@@ -57,14 +57,6 @@ CalibratedParameter parameter_from(const Json& json) {
 }
 
 /// Fitted values of one GPU: those of scope all, then its own.
-/// A GPU's own parameter takes the place of the one for all.
-bool concerns(const Calibration& calibration, const CalibratedParameter& p, const std::string& gpu) {
-  if (p.scope != Scope::all) return p.scope == Scope::gpu && p.member == gpu;
-  return std::none_of(calibration.parameters.begin(), calibration.parameters.end(), [&](const auto& own) {
-    return own.scope == Scope::gpu && own.member == gpu && own.name == p.name;
-  });
-}
-
 std::vector<const CalibratedParameter*> parameters_of(const Calibration& calibration,
                                                       const std::string& gpu) {
   std::vector<const CalibratedParameter*> found;
@@ -73,55 +65,14 @@ std::vector<const CalibratedParameter*> parameters_of(const Calibration& calibra
   return found;
 }
 
-bool changed(const Calibration& calibration, const GpuConfig& gpu, const std::string& hash) {
-  const std::set<std::string> keys = hashed_keys();
-  const auto new_and_set = [&](const std::string& key) {
-    const auto origin = gpu.origins.find(key);
-    return !calibration.gpu_keys.contains(key) && origin != gpu.origins.end() &&
-           (origin->second.layer == Origin::Layer::overlay ||
-            origin->second.layer == Origin::Layer::command_line);
-  };
-  return content_hash(gpu, calibration.gpu_keys) != hash ||
-         std::any_of(keys.begin(), keys.end(), new_and_set);
-}
-
-double quantile_of(const Calibration& calibration, std::initializer_list<Split> splits) {
-  double widest = 0.0;
-  for (const Split split : splits)
-    if (const auto found = calibration.quantile90.find(std::string(split_name(split)));
-        found != calibration.quantile90.end())
-      widest = std::max(widest, found->second);
-  return widest;
-}
-
-Support support_of(const Calibration& calibration, const GpuConfig& gpu, const std::string& hash,
-                   const std::string& technique) {
-  const auto fitted = [&](const std::string& id) {
-    const auto found = calibration.techniques.find(id);
-    return found != calibration.techniques.end() && found->second.contains(technique_id(technique));
-  };
-  const bool elsewhere = std::any_of(calibration.techniques.begin(), calibration.techniques.end(),
-                                     [&](const auto& entry) { return fitted(entry.first); });
-  if (changed(calibration, gpu, hash) || !elsewhere) return Support::extrapolated;
-  return fitted(gpu.id) ? Support::calibrated : Support::interpolated;
-}
-
-/// No frame of a user is a published one: the narrowest interval is that of a scene that the fit did not see.
-double interval_quantile(const Calibration& calibration, Support support) {
-  const double narrowest = quantile_of(calibration, {Split::in_sample, Split::leave_scene_out});
-  if (support == Support::interpolated)
-    return std::max(narrowest, quantile_of(calibration, {Split::leave_gpu_out}));
-  if (support != Support::extrapolated) return narrowest;
-  return std::max(narrowest, quantile_of(calibration, {Split::leave_technique_out, Split::rate_extrapolation,
-                                                       Split::leave_gpu_out}));
-}
-
-/// Whether a frame's time on the GPU depends on the parameter.
-bool of_interval(const Calibration& calibration, const CalibratedParameter& p, const std::string& gpu) {
-  return p.name != kPresent && concerns(calibration, p, gpu);
-}
-
 }  // namespace
+
+bool concerns(const Calibration& calibration, const CalibratedParameter& parameter, const std::string& gpu) {
+  if (parameter.scope != Scope::all) return parameter.scope == Scope::gpu && parameter.member == gpu;
+  return std::none_of(calibration.parameters.begin(), calibration.parameters.end(), [&](const auto& own) {
+    return own.scope == Scope::gpu && own.member == gpu && own.name == parameter.name;
+  });
+}
 
 Calibration make_calibration(const Experiment& experiment, const Validation& validation) {
   Calibration c;
@@ -134,7 +85,9 @@ Calibration make_calibration(const Experiment& experiment, const Validation& val
   }
   c.covariance = fit.covariance;
   c.residual_log_sd = fit.residual_log_sd;
+  c.ratio_log_sd = validation.ratio_log_sd;
   for (const SplitResult& split : validation.splits) {
+    c.ratio_quantile90[std::string(split_name(split.split))] = split.ratio_quantile90;
     c.quantile90[std::string(split_name(split.split))] = split.quantile90;
     if (split.split != Split::leave_scene_out) continue;
     for (const HeldOut& held : split.cells)
@@ -181,6 +134,8 @@ std::string calibrated_file(const GpuConfig& documented, const Calibration& cali
 std::string to_json(const Calibration& c) {
   Json json = {{"schema_version", c.version}, {"residual_log_sd", c.residual_log_sd}};
   json["quantile90"] = c.quantile90;
+  json["ratio_log_sd"] = c.ratio_log_sd;
+  json["ratio_quantile90"] = c.ratio_quantile90;
   json["techniques"] = c.techniques;
   json["gpu_keys"] = c.gpu_keys;
   json["gpu_hashes"] = c.gpu_hashes;
@@ -202,6 +157,8 @@ Calibration calibration_from_json(const std::string& text, const std::string& pa
   c.version = json.at("schema_version");
   c.residual_log_sd = json.at("residual_log_sd");
   c.quantile90 = json.at("quantile90").get<std::map<std::string, double>>();
+  c.ratio_log_sd = json.at("ratio_log_sd");
+  c.ratio_quantile90 = json.at("ratio_quantile90").get<std::map<std::string, double>>();
   c.techniques = json.at("techniques").get<std::map<std::string, std::set<std::string>>>();
   c.gpu_keys = json.at("gpu_keys").get<std::set<std::string>>();
   c.gpu_hashes = json.at("gpu_hashes").get<std::map<std::string, std::string>>();
@@ -231,36 +188,6 @@ std::optional<Fit> fit_of(const Calibration& calibration, const std::vector<Fitt
   fit.covariance = calibration.covariance;
   fit.residual_log_sd = calibration.residual_log_sd;
   return fit;
-}
-
-std::vector<std::string> interval_keys(const Calibration& calibration, const std::string& gpu) {
-  std::vector<std::string> keys;
-  for (const CalibratedParameter& p : calibration.parameters)
-    if (of_interval(calibration, p, gpu)) keys.push_back(p.name);
-  return keys;
-}
-
-FrameInterval frame_interval(const Calibration& calibration, const TimedFrame& frame, const GpuConfig& gpu,
-                             const std::string& technique) {
-  const auto hash = calibration.gpu_hashes.find(gpu.id);
-  if (hash == calibration.gpu_hashes.end()) return {};
-  FrameInterval result{support_of(calibration, gpu, hash->second, technique), {}};
-  GpuValues<double> values = gpu;
-  const std::vector<Key> keys = keys_of(values);
-  std::vector<double> gradient(calibration.parameters.size(), 0.0);
-  for (std::size_t i = 0, next = 0; i < gradient.size(); ++i) {
-    const CalibratedParameter& p = calibration.parameters[i];
-    if (!of_interval(calibration, p, gpu.id)) continue;
-    const double slope_ns = frame.slopes_ns.at(next++);
-    const Key* key = find_key(keys, p.name);
-    if (key && frame.time_ns > 0.0)
-      gradient[i] = slope_ns * *std::get<double*>(key->slot) / frame.time_ns;  // by the logarithm
-  }
-  const double sd = std::sqrt(log_variance(calibration.covariance, gradient) +
-                              calibration.residual_log_sd * calibration.residual_log_sd);
-  const double quantile = interval_quantile(calibration, result.support);
-  result.interval_ns = {frame.time_ns * std::exp(-quantile * sd), frame.time_ns * std::exp(quantile * sd)};
-  return result;
 }
 
 }  // namespace hwsim::cost_models

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "cost_models/validation.h"
-#include "hwsim/engines/timing.h"
 
 namespace hwsim::cost_models {
 
@@ -28,6 +27,8 @@ struct Calibration {
   std::vector<double> covariance;  ///< covariance of the logarithms, row by row
   double residual_log_sd = 0.0;
   std::map<std::string, double> quantile90;                 ///< by split
+  double ratio_log_sd = 0.0;                                ///< as Validation has it
+  std::map<std::string, double> ratio_quantile90;           ///< by split
   std::map<std::string, std::set<std::string>> techniques;  ///< by GPU: those with fitted rows
   std::map<std::string, double> held_out_ms;                ///< by row: by the fit that did not see its scene
   std::set<std::string> gpu_keys;                           ///< that GPUs had when they were fitted
@@ -49,25 +50,7 @@ Calibration calibration_from_json(const std::string& text, const std::string& pa
 /// The fit that a calibration holds, for the same parameters; none when they were declared differently.
 std::optional<Fit> fit_of(const Calibration& calibration, const std::vector<FittedParameter>& parameters);
 
-struct FrameInterval {
-  Support support = Support::uncalibrated;
-  std::optional<std::array<double, 2>> interval_ns;
-};
-
-/// A frame that the queue engine timed on a GPU, with the slopes of its time by interval_keys().
-struct TimedFrame {
-  double time_ns = 0.0;
-  std::vector<double> slopes_ns;
-};
-
-/// The fitted keys of a GPU, which its intervals come from.
-std::vector<std::string> interval_keys(const Calibration& calibration, const std::string& gpu);
-
-/// 90 % interval of a frame; none on a GPU that was not fitted. calibrated: technique and GPU as fitted;
-/// interpolated: the technique was fitted on another GPU; extrapolated: a technique without published times,
-/// or changed numbers of the GPU. (A key that came after the fit changes a GPU when an overlay or the command
-/// line sets it.)
-FrameInterval frame_interval(const Calibration& calibration, const TimedFrame& frame, const GpuConfig& gpu,
-                             const std::string& technique);
+/// Whether the parameter is the GPU's: a GPU's own takes the place of the one for all.
+bool concerns(const Calibration& calibration, const CalibratedParameter& parameter, const std::string& gpu);
 
 }  // namespace hwsim::cost_models

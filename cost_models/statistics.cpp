@@ -30,6 +30,20 @@ double conformal_quantile(std::vector<double> values, double ratio) {
   return values[std::min(rank, values.size()) - 1];
 }
 
+std::map<std::string, double> quantiles_without(std::span<const std::string> folds,
+                                                std::span<const double> values, double ratio) {
+  const double of_all = conformal_quantile({values.begin(), values.end()}, ratio);
+  std::map<std::string, double> quantiles;
+  for (const std::string& fold : folds) quantiles[fold] = of_all;
+  for (auto& [fold, quantile] : quantiles) {
+    std::vector<double> others;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (folds[i] != fold) others.push_back(values[i]);
+    if (!others.empty()) quantile = conformal_quantile(std::move(others), ratio);
+  }
+  return quantiles;
+}
+
 double kendall(std::span<const Ranked> values) {
   double agree = 0.0, pairs = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i)

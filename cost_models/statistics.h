@@ -1,5 +1,6 @@
 #pragma once
 // Error figures of predictions against published values.
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +15,10 @@ double median(std::vector<double> values);
 /// The smallest value that at least `ratio` of the sample does not exceed, with one unseen value counted as
 /// larger: ceil((n + 1) ratio)-th smallest, the largest for small samples (split conformal prediction).
 double conformal_quantile(std::vector<double> values, double ratio);
+
+/// For each fold the quantile of the values of the other folds, or of all where there is no other.
+std::map<std::string, double> quantiles_without(std::span<const std::string> folds,
+                                                std::span<const double> values, double ratio);
 
 /// Members of the same group are compared with each other.
 struct Ranked {

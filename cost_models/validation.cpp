@@ -9,6 +9,7 @@
 #include "cost_models/baselines.h"
 #include "cost_models/covariance.h"
 #include "cost_models/predictor.h"
+#include "cost_models/ratios.h"
 #include "cost_models/statistics.h"
 #include "hwsim/base/units_of_measure.h"
 
@@ -16,12 +17,6 @@ namespace hwsim::cost_models {
 namespace {
 
 constexpr double kCoverage = 0.9;
-
-/// Techniques of the same table, scene, GPU, light and stage are ranked against each other.
-std::string rank_group(const Cell& cell) {
-  const PublishedRow& r = cell.row;
-  return r.document + "|" + r.gpu + "|" + r.scene + "|" + r.view + "|" + r.lighting + "|" + r.pass;
-}
 
 /// Lowest sample rate of a document's cells: what rate extrapolation trains on.
 std::map<std::string, double> lowest_rates(const Experiment& experiment, const std::vector<bool>& all) {
@@ -53,28 +48,19 @@ std::vector<std::string> folds(const Experiment& experiment, const std::vector<b
   return names;
 }
 
-std::vector<double> interval_width(const std::vector<HeldOut>& cells, const Experiment& experiment) {
-  std::vector<double> z;
-  for (const HeldOut& c : cells)
-    z.push_back(std::abs(std::log(c.predicted_ms / experiment.cells[c.cell].published)) / c.log_sd);
-  return z;
-}
-
 /// 90 % intervals; those of a fold use the residuals of the other folds, where there are others.
 void set_intervals(const Experiment& experiment, SplitResult& result) {
-  const std::vector<double> z = interval_width(result.cells, experiment);
-  result.quantile90 = conformal_quantile(z, kCoverage);
-  std::map<std::string, double> by_fold;
-  for (const HeldOut& c : result.cells) by_fold[c.fold] = result.quantile90;
-  for (auto& [fold, quantile] : by_fold) {
-    std::vector<double> others;
-    for (std::size_t i = 0; i < z.size(); ++i)
-      if (result.cells[i].fold != fold) others.push_back(z[i]);
-    if (!others.empty()) quantile = conformal_quantile(others, kCoverage);
+  std::vector<double> z;
+  std::vector<std::string> names;
+  for (const HeldOut& c : result.cells) {
+    z.push_back(std::abs(std::log(c.predicted_ms / experiment.cells[c.cell].published)) / c.log_sd);
+    names.push_back(c.fold);
   }
+  result.quantile90 = conformal_quantile(z, kCoverage);
+  const std::map<std::string, double> by_fold = quantiles_without(names, z, kCoverage);
   for (HeldOut& c : result.cells) {
-    c.low_ms = c.predicted_ms * std::exp(-by_fold[c.fold] * c.log_sd);
-    c.high_ms = c.predicted_ms * std::exp(by_fold[c.fold] * c.log_sd);
+    c.low_ms = c.predicted_ms * std::exp(-by_fold.at(c.fold) * c.log_sd);
+    c.high_ms = c.predicted_ms * std::exp(by_fold.at(c.fold) * c.log_sd);
   }
 }
 
@@ -87,7 +73,7 @@ std::vector<HeldOut> predict_marked(const Experiment& experiment, const Fit& fit
     if (!marked[i]) continue;
     const double variance =
         log_variance(fit.covariance, predictor[i].gradient) + fit.residual_log_sd * fit.residual_log_sd;
-    cells.push_back({i, fold, predictor[i].ms, std::sqrt(variance), 0.0, 0.0});
+    cells.push_back({i, fold, predictor[i].ms, std::sqrt(variance), 0.0, 0.0, predictor[i].gradient});
   }
   return cells;
 }
@@ -118,6 +104,7 @@ class Validator {
     optima_ = {{Split::in_sample, "", optimum_}};
     for (int s = 0; s < kSplitCount; ++s)
       validation.splits.push_back(split(static_cast<Split>(s), validation.fit));
+    add_ratios(experiment_, validation);
     validation.optima = std::move(optima_);
     by_label(validation);
     count(validation);
@@ -198,7 +185,7 @@ class Validator {
                      std::map<std::string, std::vector<HeldOut>>& baselines) {
     for (const auto& [name, predicted] : baseline_predictions(experiment_, work_, train, test))
       for (std::size_t i = 0; i < cells.size(); ++i)
-        baselines[name].push_back({cells[i].cell, cells[i].fold, predicted[i], 0.0, 0.0, 0.0});
+        baselines[name].push_back({cells[i].cell, cells[i].fold, predicted[i], 0.0, 0.0, 0.0, {}});
   }
 
   void by_label(Validation& validation) const {
@@ -287,6 +274,7 @@ Figures figures_of(const Experiment& experiment, const std::vector<HeldOut>& cel
   Figures figures;
   figures.cells = cells.size();
   std::vector<double> errors;
+  std::vector<double> widths;
   std::vector<Ranked> ranked;
   double inside = 0.0;
   for (const HeldOut& c : cells) {
@@ -295,13 +283,20 @@ Figures figures_of(const Experiment& experiment, const std::vector<HeldOut>& cel
     if (!figures.worst || errors.back() > figures.worst->ape_pct) figures.worst = {c.cell, errors.back()};
     ranked.push_back({rank_group(cell), c.predicted_ms, cell.published});
     inside += c.low_ms <= cell.published && cell.published <= c.high_ms ? 1.0 : 0.0;
+    if (c.low_ms > 0.0) widths.push_back(c.high_ms / c.low_ms);
   }
   if (cells.empty()) return figures;
   figures.mape_pct = mean(errors);
   figures.median_ape_pct = median(errors);
   figures.kendall = kendall(ranked);
   figures.coverage90_pct = inside / static_cast<double>(cells.size()) * 100.0;
+  if (!widths.empty()) figures.width_ratio = median(std::move(widths));
   return figures;
+}
+
+std::string rank_group(const Cell& cell) {
+  const PublishedRow& r = cell.row;
+  return r.document + "|" + r.gpu + "|" + r.scene + "|" + r.view + "|" + r.lighting + "|" + r.pass;
 }
 
 /// The count of a technique's counter, by its id: which slot it has, techniques decide.

@@ -21,6 +21,24 @@ struct HeldOut {
   double predicted_ms = 0.0;
   double log_sd = 0.0;                 ///< standard deviation of ln(time), from parameters and residuals
   double low_ms = 0.0, high_ms = 0.0;  ///< 90 % interval
+  std::vector<double> gradient;        ///< d ln(time) / d ln(parameter); none from simple rules
+};
+
+/// Two cells of one table, scene, GPU, light and stage with other techniques: how many times as long the
+/// second takes. Who chooses a technique asks for this, not for times.
+struct HeldOutRatio {
+  std::size_t first = 0, second = 0;  ///< cells
+  std::string fold;                   ///< what was left out for both: "dragon"
+  double predicted = 1.0, published = 1.0;
+  double log_sd = 0.0;           ///< standard deviation of ln(ratio)
+  double low = 1.0, high = 1.0;  ///< 90 % interval
+};
+
+struct RatioFigures {
+  std::size_t pairs = 0;
+  double median_ape_pct = 0.0;
+  double coverage90_pct = 0.0;
+  double width_ratio = 1.0;  ///< median of high / low
 };
 
 struct Worst {
@@ -34,6 +52,7 @@ struct Figures {
   std::optional<Worst> worst;
   double kendall = 1.0;
   double coverage90_pct = 0.0;
+  double width_ratio = 1.0;  ///< median of high / low of the 90 % intervals
 };
 
 struct SplitResult {
@@ -42,6 +61,9 @@ struct SplitResult {
   double quantile90 = 0.0;  ///< 90 % quantile of |ln(predicted / published)| / log_sd: intervals of this kind
   Figures figures;
   std::map<std::string, Figures> baselines;  ///< mean, bytes_over_bandwidth, linear_regression
+  std::vector<HeldOutRatio> ratios;
+  double ratio_quantile90 = 0.0;  ///< as quantile90, of ratios
+  RatioFigures ratio_figures;
 };
 
 /// Where the fit without a fold ended: the logarithms of the experiment's parameters. Split::in_sample has
@@ -56,6 +78,7 @@ struct Validation {
   Fit fit;                          ///< to all cells
   std::vector<FoldOptimum> optima;  ///< optimum of every fit
   std::vector<SplitResult> splits;
+  double ratio_log_sd = 0.0;  ///< spread of ln(ratio) of two techniques that the parameters do not explain
   std::map<std::string, Figures> papers, gpus;  ///< in sample
   double shaded_samples_mape_pct = 0.0, memory_worst_pct = 0.0;
   std::size_t shaded_samples_cells = 0, memory_cells = 0;
@@ -72,6 +95,9 @@ Validation validate(const Experiment& experiment, const FitOptions& options, con
 std::vector<HeldOut> predict_cells(const Experiment& experiment, const Fit& fit, double quantile90, int jobs);
 
 Figures figures_of(const Experiment& experiment, const std::vector<HeldOut>& cells);
+
+/// Cells of one group are compared with each other: table, scene, GPU, view, light and stage.
+std::string rank_group(const Cell& cell);
 
 /// What a cell's run counts itself: shaded samples of its passes, or allocated MiB.
 double counted(const Experiment& experiment, const Replay& replay, std::size_t cell);

@@ -83,6 +83,8 @@ Lab& Lab::operator=(Lab&&) noexcept = default;
 
 const Cache& Lab::cache() const { return session_->cache(); }
 
+const cost_models::Calibration* Lab::calibration() { return session_->files().calibration().get(); }
+
 RunPlan Lab::plan(const Request& request, std::vector<Diagnostic>& problems) {
   return make_plan(request, session_->files(), problems);
 }
@@ -122,10 +124,14 @@ Comparison Lab::compare(const Request& request, const std::vector<Variation>& va
     const std::string label = i > 0 ? variations[i - 1].label : points == 1 ? "baseline" : "";
     for (Result& result : sink.take().results) {
       std::string name = label_of(result, label, points > 1);
-      labeled.push_back({std::move(name), std::move(result)});
+      labeled.push_back({std::move(name), std::move(result), i > 0 ? variations[i - 1].label : ""});
     }
   }
-  return lab::compare(labeled);
+  return lab::compare(labeled, plans.front().calibration.get());
+}
+
+Comparison Lab::compare_folders(const std::vector<std::string>& folders) {
+  return compare_results(folders, calibration());
 }
 
 const SceneSummary& Lab::scene(const View& view) { return session_->scene(view).summary(); }

@@ -34,6 +34,8 @@ class Lab {
   /// What there is: GPUs, techniques, scenes, overlays, counters, published tables, error codes.
   const Catalog& catalog() const { return catalog_; }
   const Cache& cache() const;
+  /// What intervals come from; null where the configuration holds no fit. Valid as long as the lab.
+  const cost_models::Calibration* calibration();
 
   /// The request with every value decided; its problems are appended, nothing is drawn.
   RunPlan plan(const Request& request, std::vector<Diagnostic>& problems);
@@ -48,6 +50,8 @@ class Lab {
   /// The request against each variation of it, each technique and each GPU; there must be two results at
   /// least.
   Comparison compare(const Request& request, const std::vector<Variation>& variations = {});
+  /// Results that runs have written.
+  Comparison compare_folders(const std::vector<std::string>& folders);
 
   /// What the lab knows of a view's scene, and the view's ray-traced truth. Valid as long as the lab.
   const SceneSummary& scene(const View& view);

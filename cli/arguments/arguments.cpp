@@ -108,6 +108,7 @@ void Parser::add_compare() {
                  "Overlays of `hwsim list overlays`, each a result of its own; a+b lays both", "NAME,NAME");
   add_vary(sub, compare.vary, compare.zip);
   sub.add_flag("--counters", compare.counters, "Also the counters that changed");
+  sub.add_flag("--all", compare.all, "Also the passes that do not change");
   add_common(sub, compare.common);
 }
 

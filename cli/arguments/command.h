@@ -60,6 +60,7 @@ struct CompareArguments : RunArguments {
   std::vector<std::string> what_ifs, vary;
   bool zip = false;
   bool counters = false;
+  bool all = false;  ///< passes that do not change, too
 };
 
 /// Why a frame takes its time.

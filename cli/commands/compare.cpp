@@ -36,10 +36,16 @@ ExitStatus compare(const CompareArguments& options, Context& context) {
   if (!results_given && options.inputs.size() > 1)
     fail_usage("U004", "one scene, or the folders of several results, can be compared", "",
                "`hwsim run SCENE --out DIR` for each scene, then `hwsim compare DIR DIR`");
-  const Comparison comparison = results_given ? compare_results(options.inputs) : simulate(options, context);
+  const Comparison comparison = results_given
+                                    ? Lab(lab_options(options, context.log)).compare_folders(options.inputs)
+                                    : simulate(options, context);
   const nlohmann::ordered_json json = to_json(comparison);
-  print({.table = pass_comparison(comparison),
-         .heading = to_text(frame_comparison(comparison)) + "\n",
+  const Table matrix = variation_matrix(comparison);
+  print({.table = pass_comparison(comparison, options.all),
+         .heading = to_text(frame_comparison(comparison)) + "\n" +
+                    (matrix.rows.empty() ? ""
+                                         : "time of each technique against its own, 90 % interval\n" +
+                                               to_text(matrix) + "\n"),
          .footing = options.counters ? "\n" + to_text(counter_comparison(comparison)) : std::string(),
          .json = &json},
         options.common);

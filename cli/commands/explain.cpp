@@ -56,10 +56,10 @@ ExitStatus explain(const ExplainArguments& options, Context& context) {
   std::string heading, footing;
   for (const Explanation& explanation : explanations) heading += text_of(explanation);
   if (explanations.size() > 1) {
-    const Comparison compared = lab::compare(explanations);
+    const Comparison compared = lab::compare(explanations, lab.calibration());
     footing = "\n" + to_text(frame_comparison(compared)) + "\n" + to_text(pass_comparison(compared));
   }
-  const nlohmann::ordered_json json = to_json(explanations);
+  const nlohmann::ordered_json json = to_json(explanations, lab.calibration());
   print({.table = joined(explanations, options.all), .heading = heading, .footing = footing, .json = &json},
         options.common);
   return ExitStatus::done;

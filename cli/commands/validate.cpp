@@ -34,7 +34,7 @@ ExitStatus validate(const ValidateArguments& options, Context& context) {
   const nlohmann::ordered_json json = to_json(validation);
   const Table not_run = not_run_table(validation.model->experiment);
   print({.table = split_table(validation),
-         .footing = "\n" + to_text(label_table(validation)) + "\n" +
+         .footing = "\n" + to_text(ratio_table(validation)) + "\n" + to_text(label_table(validation)) + "\n" +
                     to_text(worst_table(*validation.model, kWorstCells)) + "\n" + counts_text(validation) +
                     (not_run.rows.empty() ? "" : "\n" + to_text(not_run)),
          .json = &json},

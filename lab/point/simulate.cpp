@@ -5,7 +5,6 @@
 #include <array>
 #include <chrono>
 
-#include "cost_models/calibration.h"
 #include "hwsim/timing/time_slopes.h"
 
 namespace hwsim::lab {
@@ -13,6 +12,17 @@ namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The part of the frame's time that each unit holds up.
+std::vector<std::pair<std::string, double>> parts_by_unit(const FrameTiming& timing) {
+  std::vector<std::pair<std::string, double>> parts;
+  for (std::size_t u = 0; u < kUnitCount; ++u) {
+    double ns = 0.0;
+    for (const PassTiming& pass : timing.passes) ns += pass.stack_ns[u];
+    if (ns > 0.0) parts.emplace_back(unit_name(static_cast<Unit>(u)), ns / timing.time_ns);
+  }
+  return parts;
 }
 
 /// Times the frame, with its interval where the calibration knows the GPU.
@@ -26,10 +36,11 @@ void time_point(PointResult& point, const RunPlan& plan) {
   }
   TimeSlopes slopes(gpu, cost_models::interval_keys(*calibration, gpu.id));
   point.timing = time_frame(trace, gpu, plan.engine, plan.timing, &slopes);
-  const cost_models::FrameInterval found = cost_models::frame_interval(
+  cost_models::FrameInterval found = cost_models::frame_interval(
       *calibration, {point.timing.time_ns, slopes.ns()}, gpu, algos::technique_text(*point.technique));
   point.timing.support = found.support;
   point.timing.interval_ns = found.interval_ns;
+  point.error_sources = {std::move(found.by_parameter), parts_by_unit(point.timing)};
 }
 
 }  // namespace

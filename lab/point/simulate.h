@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "cost_models/intervals.h"
 #include "lab/store/reference_image.h"
 #include "lab/store/trace_store.h"
 #include "pipeline/image/metrics.h"
@@ -27,6 +28,7 @@ struct PointResult {
   std::shared_ptr<const pipeline::Emulation> emulation;
   bool from_cache = false;  ///< an earlier point, or an earlier run, emulated the same work
   FrameTiming timing;
+  cost_models::ErrorSources error_sources{};
   double timing_wall_s = 0.0;
   std::optional<pipeline::ImageError> image_error;
   pipeline::Image flip_map;  ///< empty without a reference

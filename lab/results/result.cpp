@@ -39,6 +39,7 @@ FrameResult make_frame(const PointResult& point) {
   return {.time_ms = timing.time_ns / kNsPerMs,
           .interval_ms = in_ms(timing.interval_ns),
           .support = std::string(support_name(timing.support)),
+          .error_sources = point.error_sources,
           .memory_mib = static_cast<double>(trace.peak_memory_bytes) / kBytesPerMib,
           .allocated_mib = static_cast<double>(trace.allocated_memory_bytes) / kBytesPerMib,
           .dram_mb = (timing.dram_bytes.total_read() + timing.dram_bytes.total_write()) / kBytesPerMb,
@@ -88,20 +89,28 @@ PassResult pass_from_json(const Json& json) {
           .counters = named_from_json<std::uint64_t>(json.at("counters"))};
 }
 
+Json sources_json(const cost_models::ErrorSources& sources) {
+  return {{"by_parameter", named_json(sources.by_parameter)}, {"by_unit", named_json(sources.by_unit)}};
+}
+
+cost_models::ErrorSources sources_from_json(const Json& json) {
+  const Json none = Json::object();
+  return {named_from_json<double>(json.value("by_parameter", none)),
+          named_from_json<double>(json.value("by_unit", none))};
+}
+
 Json frame_json(const FrameResult& frame) {
-  return {{"time_ms", frame.time_ms},
-          {"interval_ms", interval_json(frame.interval_ms)},
-          {"support", frame.support},
-          {"memory_mib", frame.memory_mib},
-          {"allocated_mib", frame.allocated_mib},
-          {"dram_mb", frame.dram_mb},
-          {"shaded_samples", frame.shaded_samples}};
+  return {{"time_ms", frame.time_ms},       {"interval_ms", interval_json(frame.interval_ms)},
+          {"support", frame.support},       {"error_sources", sources_json(frame.error_sources)},
+          {"memory_mib", frame.memory_mib}, {"allocated_mib", frame.allocated_mib},
+          {"dram_mb", frame.dram_mb},       {"shaded_samples", frame.shaded_samples}};
 }
 
 FrameResult frame_from_json(const Json& json) {
   return {.time_ms = json.at("time_ms").get<double>(),
           .interval_ms = interval_from_json(json.value("interval_ms", Json())),
           .support = json.value("support", ""),
+          .error_sources = sources_from_json(json.value("error_sources", Json::object())),
           .memory_mib = json.at("memory_mib").get<double>(),
           .allocated_mib = json.value("allocated_mib", 0.0),
           .dram_mb = json.at("dram_mb").get<double>(),

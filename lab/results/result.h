@@ -32,8 +32,9 @@ struct FrameResult {
   double time_ms = 0.0;
   std::optional<std::array<double, 2>> interval_ms{};  ///< 90 %; none without a calibration
   std::string support{};
-  double memory_mib = 0.0;     ///< the most that is alive at once
-  double allocated_mib = 0.0;  ///< all attachments
+  cost_models::ErrorSources error_sources{};  ///< empty without an interval
+  double memory_mib = 0.0;                    ///< the most that is alive at once
+  double allocated_mib = 0.0;                 ///< all attachments
   double dram_mb = 0.0;
   std::uint64_t shaded_samples = 0;
 };

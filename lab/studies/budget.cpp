@@ -10,17 +10,19 @@
 namespace hwsim::lab {
 namespace {
 
+using IntervalMember = std::optional<std::array<double, 2>> Costs::*;
+
 struct Quantity {
   double Costs::*member;
-  bool is_time;
+  IntervalMember interval;  ///< none of what is counted
 };
 
 const std::map<std::string, Quantity>& quantities() {
-  static const std::map<std::string, Quantity> known = {{"aa_ms", {&Costs::aa_ms, true}},
-                                                        {"frame_ms", {&Costs::frame_ms, true}},
-                                                        {"extra_mib", {&Costs::extra_mib, false}},
-                                                        {"memory_mib", {&Costs::memory_mib, false}},
-                                                        {"dram_mb", {&Costs::dram_mb, false}}};
+  static const std::map<std::string, Quantity> known = {{"aa_ms", {&Costs::aa_ms, &Costs::aa_interval_ms}},
+                                                        {"frame_ms", {&Costs::frame_ms, &Costs::interval_ms}},
+                                                        {"extra_mib", {&Costs::extra_mib, nullptr}},
+                                                        {"memory_mib", {&Costs::memory_mib, nullptr}},
+                                                        {"dram_mb", {&Costs::dram_mb, nullptr}}};
   return known;
 }
 
@@ -59,17 +61,14 @@ std::string_view verdict(const Costs& costs, const std::vector<Limit>& budget) {
   for (const Limit& limit : budget) {
     const Quantity quantity = quantities().at(limit.quantity);
     const double value = costs.*quantity.member;
-    if (!quantity.is_time) {
+    if (!quantity.interval) {
       over_memory = over_memory || value > limit.at_most;
       continue;
     }
-    // Two frames of one scene on one GPU err by about the same factor, so that their difference does, too:
-    // the cost of anti-aliasing is no less certain than the frame, and `none` costs nothing for certain.
-    const double least = costs.interval_ms ? (*costs.interval_ms)[0] / costs.frame_ms : 1.0;
-    const double most = costs.interval_ms ? (*costs.interval_ms)[1] / costs.frame_ms : 1.0;
-    over_time = over_time || value * least > limit.at_most;
-    at_risk = at_risk || value * most > limit.at_most;
-    unknown = unknown || (!costs.interval_ms && value > 0.0);
+    const auto& interval = costs.*quantity.interval;
+    over_time = over_time || (interval ? (*interval)[0] : value) > limit.at_most;
+    at_risk = at_risk || (interval ? (*interval)[1] : value) > limit.at_most;
+    unknown = unknown || (!interval && value > 0.0);
   }
   return over_memory ? "over memory"
          : over_time ? "over time"

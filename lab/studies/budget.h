@@ -11,7 +11,8 @@ namespace hwsim::lab {
 /// What a budget can limit; `aa_` and `extra_` are relative to no anti-aliasing at all.
 struct Costs {
   double frame_ms = 0.0, aa_ms = 0.0, memory_mib = 0.0, extra_mib = 0.0, dram_mb = 0.0;
-  std::optional<std::array<double, 2>> interval_ms;  ///< interval of frame_ms
+  std::optional<std::array<double, 2>> interval_ms;     ///< 90 %, of frame_ms
+  std::optional<std::array<double, 2>> aa_interval_ms;  ///< the same of aa_ms
 };
 
 struct Limit {

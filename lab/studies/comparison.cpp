@@ -60,18 +60,28 @@ PassDifference pass_difference(const std::string& name, const PassResult* before
   return difference;
 }
 
-Difference difference_of(const Result& base, const LabeledResult& labeled) {
-  const Result& result = labeled.result;
+Support support_of(const FrameResult& frame) {
+  for (const Support support : {Support::calibrated, Support::interpolated, Support::extrapolated})
+    if (frame.interval_ms && frame.support == support_name(support)) return support;
+  return Support::uncalibrated;
+}
+
+Difference difference_of(const LabeledResult& before, const LabeledResult& after,
+                         const cost_models::Calibration* calibration) {
+  const Result &base = before.result, &result = after.result;
   const FrameResult &old = base.frame, &now = result.frame;
   Difference difference{
-      .label = labeled.label,
+      .label = after.label,
+      .variation = after.variation,
       .scene = result.scene,
       .technique = result.technique,
       .gpu = result.gpu,
+      .base = before.label,
       .time_ms = {old.time_ms, now.time_ms},
       .memory_mib = {old.memory_mib, now.memory_mib},
       .dram_mb = {old.dram_mb, now.dram_mb},
       .shaded_samples = {static_cast<double>(old.shaded_samples), static_cast<double>(now.shaded_samples)}};
+  if (calibration) difference.time_change_interval = time_change_interval(base, result, *calibration);
   for (const std::string& name : pass_names(base, result))
     difference.passes.push_back(pass_difference(name, find_pass(base, name), find_pass(result, name)));
   return difference;
@@ -110,12 +120,17 @@ Json to_json(const PassDifference& pass) {
 }
 
 Json to_json(const Difference& difference) {
+  Json time = to_json(difference.time_ms);
+  const auto& interval = difference.time_change_interval;
+  time["delta_interval90"] = interval ? Json{(*interval)[0], (*interval)[1]} : Json(nullptr);
   Json json = {{"label", difference.label},
+               {"variation", difference.variation},
+               {"base", difference.base},
                {"scene", difference.scene},
                {"technique", difference.technique},
                {"gpu", difference.gpu},
                {"frame",
-                {{"time_ms", to_json(difference.time_ms)},
+                {{"time_ms", time},
                  {"memory_mib", to_json(difference.memory_mib)},
                  {"dram_mb", to_json(difference.dram_mb)},
                  {"shaded_samples", to_json(difference.shaded_samples)}}},
@@ -153,13 +168,17 @@ PassDifference pass_difference_from_json(const Json& json) {
 Difference difference_from_json(const Json& json) {
   const Json& frame = json.at("frame");
   Difference difference{.label = json.at("label").get<std::string>(),
+                        .variation = json.value("variation", ""),
                         .scene = json.at("scene").get<std::string>(),
                         .technique = json.at("technique").get<std::string>(),
                         .gpu = json.at("gpu").get<std::string>(),
+                        .base = json.value("base", ""),
                         .time_ms = change_from_json<double>(frame.at("time_ms")),
                         .memory_mib = change_from_json<double>(frame.at("memory_mib")),
                         .dram_mb = change_from_json<double>(frame.at("dram_mb")),
                         .shaded_samples = change_from_json<double>(frame.at("shaded_samples"))};
+  if (const Json interval = frame.at("time_ms").value("delta_interval90", Json()); !interval.is_null())
+    difference.time_change_interval = {interval.at(0).get<double>(), interval.at(1).get<double>()};
   for (const Json& pass : json.at("passes")) difference.passes.push_back(pass_difference_from_json(pass));
   return difference;
 }
@@ -172,10 +191,30 @@ std::optional<double> relative_change(double before, double after) {
   return (after - before) / std::abs(before);
 }
 
-Comparison compare(const std::vector<LabeledResult>& results) {
+std::optional<std::array<double, 2>> time_change_interval(const Result& before, const Result& after,
+                                                          const cost_models::Calibration& calibration) {
+  const cost_models::Likeness likeness{
+      .technique = before.technique == after.technique,
+      .gpu = before.gpu == after.gpu,
+      .scene = before.scene == after.scene && before.resolution == after.resolution,
+      .support = std::max(support_of(before.frame), support_of(after.frame))};
+  const std::optional<double> half = cost_models::ratio_half_width(calibration, before.frame.error_sources,
+                                                                   after.frame.error_sources, likeness);
+  if (!half || before.frame.time_ms <= 0.0) return std::nullopt;
+  const double ratio = after.frame.time_ms / before.frame.time_ms;
+  return std::array{ratio / *half - 1.0, ratio * *half - 1.0};
+}
+
+Comparison compare(const std::vector<LabeledResult>& results, const cost_models::Calibration* calibration) {
   Comparison comparison{results.front().label, results.front().result, {}};
-  for (std::size_t i = 1; i < results.size(); ++i)
-    comparison.differences.push_back(difference_of(comparison.baseline, results[i]));
+  for (std::size_t i = 1; i < results.size(); ++i) {
+    const LabeledResult& after = results[i];
+    const auto own = std::ranges::find_if(results, [&](const LabeledResult& before) {
+      return before.result.technique == after.result.technique && before.result.gpu == after.result.gpu;
+    });
+    const LabeledResult& before = &*own == &after ? results.front() : *own;
+    comparison.differences.push_back(difference_of(before, after, calibration));
+  }
   return comparison;
 }
 

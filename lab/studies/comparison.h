@@ -1,5 +1,5 @@
 #pragma once
-// Results side by side: the first is the baseline, and each other one is what changed against it. A result
+// Results side by side: each is what changed against its own technique before, or against the first. A result
 // that was just made and one read from a folder are the same thing.
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -12,8 +12,9 @@
 namespace hwsim::lab {
 
 struct LabeledResult {
-  std::string label{};  ///< "baseline", "rops-x2", "runs/a"
+  std::string label{};  ///< "baseline", "msaa4x on gtx980 rops-x2", "runs/a"
   Result result{};
+  std::string variation{};  ///< "rops-x2"; empty: as asked for
 };
 
 /// (new - old) / |old|; none where old is 0 and new is not.
@@ -34,8 +35,12 @@ struct PassDifference {
 };
 
 struct Difference {
-  std::string label{}, scene{}, technique{}, gpu{};
+  std::string label{}, variation{}, scene{}, technique{}, gpu{};
+  std::string base{};  ///< label of the result that it is held against
   Change<double> time_ms{}, memory_mib{}, dram_mb{}, shaded_samples{};
+  /// 90 % interval of the relative change of the time; none without a calibration. It is narrower than those
+  /// of the times, since what is wrong with both cancels.
+  std::optional<std::array<double, 2>> time_change_interval{};
   std::vector<PassDifference> passes{};  ///< in the order of the baseline, new ones where they stand
 };
 
@@ -45,8 +50,14 @@ struct Comparison {
   std::vector<Difference> differences{};  ///< one a result behind the first
 };
 
-/// Compares all with the first; there must be one.
-Comparison compare(const std::vector<LabeledResult>& results);
+/// Compares each result with the first one of its own technique on its GPU, and the first of each with the
+/// first of all; there must be one. `calibration` may be null: no intervals.
+Comparison compare(const std::vector<LabeledResult>& results, const cost_models::Calibration* calibration);
+
+/// 90 % interval of the relative change of the time from one result to another; none without intervals of
+/// both.
+std::optional<std::array<double, 2>> time_change_interval(const Result& before, const Result& after,
+                                                          const cost_models::Calibration& calibration);
 
 nlohmann::ordered_json to_json(const Comparison& comparison);
 /// Throws nlohmann::json::exception where a field is missing or of another type.
@@ -55,8 +66,13 @@ Comparison comparison_from_json(const nlohmann::ordered_json& json);
 /// One row a result, the baseline first: time, change, limiter, bytes, memory, shaded samples.
 Table frame_comparison(const Comparison& comparison);
 
-/// One row a difference and pass: times, limiters and bytes before and after.
-Table pass_comparison(const Comparison& comparison);
+/// Techniques by variations: what each variation does to the time, "+73 % [+66, +81]". No rows without
+/// variations.
+Table variation_matrix(const Comparison& comparison);
+
+/// One row a difference and pass: times, limiters and bytes before and after; those that change alone, or
+/// `all`.
+Table pass_comparison(const Comparison& comparison, bool all = false);
 
 /// One row a difference, pass and counter that changed.
 Table counter_comparison(const Comparison& comparison);
@@ -67,7 +83,8 @@ bool is_result(const std::string& name);
 /// Results in a folder that `run` wrote: one, or one for each point. Throws InputError U020.
 std::vector<LabeledResult> read_results(const std::string& path);
 
-/// Compares all results in the folders with the first. Throws InputError U002 when there is one alone.
-Comparison compare_results(const std::vector<std::string>& paths);
+/// Compares the results in the folders. Throws InputError U002 when there is one alone.
+Comparison compare_results(const std::vector<std::string>& paths,
+                           const cost_models::Calibration* calibration);
 
 }  // namespace hwsim::lab

@@ -95,18 +95,19 @@ std::string label_of(const Explanation& explanation) {
   return explanation.result.technique + " on " + explanation.result.gpu;
 }
 
-Comparison compare(const std::vector<Explanation>& explanations) {
+Comparison compare(const std::vector<Explanation>& explanations,
+                   const cost_models::Calibration* calibration) {
   std::vector<LabeledResult> results;
   for (const Explanation& explanation : explanations)
-    results.push_back({label_of(explanation), explanation.result});
-  return compare(results);
+    results.push_back({label_of(explanation), explanation.result, {}});
+  return compare(results, calibration);
 }
 
-Json to_json(const std::vector<Explanation>& explanations) {
+Json to_json(const std::vector<Explanation>& explanations, const cost_models::Calibration* calibration) {
   if (explanations.size() == 1) return to_json(explanations.front());
   Json json = {{"schema_version", kResultSchemaVersion}, {"results", Json::array()}};
   for (const Explanation& explanation : explanations) json["results"].push_back(to_json(explanation));
-  json["difference"] = to_json(compare(explanations))["results"];
+  json["difference"] = to_json(compare(explanations, calibration))["results"];
   return json;
 }
 

@@ -40,8 +40,10 @@ nlohmann::ordered_json to_json(const Explanation& explanation);
 /// Throws nlohmann::json::exception where a field is missing or of another type.
 Explanation explanation_from_json(const nlohmann::ordered_json& json);
 
-/// The answer of a run: one explanation alone, or all in "results" and what they differ in.
-nlohmann::ordered_json to_json(const std::vector<Explanation>& explanations);
+/// The answer of a run: one explanation alone, or all in "results" and what they differ in. `calibration` may
+/// be null: no intervals of differences.
+nlohmann::ordered_json to_json(const std::vector<Explanation>& explanations,
+                               const cost_models::Calibration* calibration);
 
 /// The passes: limiter, time stack, busiest units.
 Table explained_passes(const Explanation& explanation);
@@ -52,8 +54,8 @@ Table sensitivity_table(const Explanation& explanation, bool every);
 /// "msaa4x on gtx980".
 std::string label_of(const Explanation& explanation);
 
-/// The first explanation against the others; there must be one.
-Comparison compare(const std::vector<Explanation>& explanations);
+/// The first explanation against the others; there must be one. `calibration` may be null.
+Comparison compare(const std::vector<Explanation>& explanations, const cost_models::Calibration* calibration);
 
 /// The share of the slowest pass's time that goes to its limiter, 0 to 1.
 double limiter_share_ratio(const Explanation& explanation);

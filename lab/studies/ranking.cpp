@@ -1,6 +1,7 @@
 #include "lab/studies/ranking.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lab/base/messages.h"
 #include "lab/results/result.h"
@@ -22,6 +23,21 @@ bool beats(const RankedTechnique& a, const RankedTechnique& b) {
   const double time = a.frame_ms - b.frame_ms;
   const double error = a.flip_mean - b.flip_mean;
   return a.runs() && time <= 0.0 && error <= 0.0 && (time < 0.0 || error < 0.0);
+}
+
+/// 90 % interval of what `after` takes beyond `before`. Two errors add up: the one that both frames have in
+/// common, which acts on the difference, and that of their ratio, which acts on the frame.
+std::optional<std::array<double, 2>> extra_interval(const Result& before, const Result& after,
+                                                    const cost_models::Calibration* calibration) {
+  const double extra_ms = after.frame.time_ms - before.frame.time_ms;
+  if (!after.frame.interval_ms) return std::nullopt;
+  if (after.technique == before.technique) return std::array{0.0, 0.0};
+  const auto change = calibration ? time_change_interval(before, after, *calibration) : std::nullopt;
+  if (!change) return std::nullopt;
+  const double common = std::log((*after.frame.interval_ms)[1] / after.frame.time_ms) * extra_ms;
+  const double own = 0.5 * std::log((1.0 + (*change)[1]) / (1.0 + (*change)[0])) * after.frame.time_ms;
+  const double half_ms = std::hypot(common, own);
+  return std::array{extra_ms - half_ms, extra_ms + half_ms};
 }
 
 }  // namespace
@@ -64,11 +80,14 @@ void RankingSink::begin(const RunContext& run) {
   ranking_.gpu = run.plan.gpus.front().id;
   ranking_.resolution = run.plan.view.resolution;
   ranking_.reference_samples = run.plan.reference_samples;
+  calibration_ = run.plan.calibration;
   if (run.plan.images) shown_.push_back(shown_image("reference", run.reference->image, nullptr));
 }
 
 void RankingSink::point(const PointResult& point, const RunContext& run) {
-  const FrameResult frame = make_result(point, run.plan, run.scene.name).frame;
+  Result result = make_result(point, run.plan, run.scene.name);
+  result.passes.clear();
+  const FrameResult& frame = results_.emplace_back(std::move(result)).frame;
   RankedTechnique& technique = ranking_.techniques.emplace_back();
   technique.technique = algos::technique_text(*point.technique);
   technique.frame_ms = frame.time_ms;
@@ -81,7 +100,8 @@ void RankingSink::point(const PointResult& point, const RunContext& run) {
   costs_.push_back({.frame_ms = frame.time_ms,
                     .memory_mib = frame.memory_mib,
                     .dram_mb = frame.dram_mb,
-                    .interval_ms = frame.interval_ms});
+                    .interval_ms = frame.interval_ms,
+                    .aa_interval_ms = std::nullopt});
   if (run.plan.images)
     shown_.push_back(shown_image(technique.technique, point.emulation->color, &point.flip_map));
 }
@@ -93,6 +113,7 @@ void RankingSink::failed(const algos::TechniqueChoice& technique, const GpuConfi
   unsupported.verdict = "unsupported";
   unsupported.reason = error.what();
   costs_.emplace_back();
+  results_.emplace_back();
 }
 
 Ranking RankingSink::ranking() {
@@ -104,6 +125,8 @@ Ranking RankingSink::ranking() {
     Costs costs = costs_[i];
     technique.aa_ms = costs.aa_ms = costs.frame_ms - none.frame_ms;
     technique.extra_mib = costs.extra_mib = costs.memory_mib - none.memory_mib;
+    technique.aa_interval_ms = costs.aa_interval_ms =
+        extra_interval(results_.front(), results_[i], calibration_.get());
     technique.verdict = verdict(costs, limits_);
   }
   mark_pareto(ranking.techniques);

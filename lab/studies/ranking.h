@@ -1,6 +1,7 @@
 #pragma once
 // Techniques on one scene and GPU, the best first: what each costs, how far its image is from the reference,
 // and what it is under a budget.
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include "lab/point/run_sink.h"
 #include "lab/results/contact_sheet.h"
 #include "lab/studies/budget.h"
+#include "lab/studies/comparison.h"
 
 namespace hwsim::lab {
 
@@ -21,6 +23,8 @@ struct RankedTechnique {
   std::optional<std::array<double, 2>> interval_ms{};  ///< 90 %, of frame_ms
   std::string support{};
   double aa_ms = 0.0, extra_mib = 0.0;  ///< beyond no anti-aliasing
+  /// 90 %, of aa_ms: the ratio to no anti-aliasing is known better than the two times.
+  std::optional<std::array<double, 2>> aa_interval_ms{};
   double dram_mb = 0.0;
   double flip_mean = 0.0, psnr_db = 0.0;  ///< error of the image against the reference
   std::uint64_t shaded_samples = 0;
@@ -67,6 +71,8 @@ class RankingSink : public RunSink {
   std::vector<Limit> limits_;
   Ranking ranking_;
   std::vector<Costs> costs_;
+  std::vector<Result> results_;  ///< as costs_; what ratios to the first come from
+  std::shared_ptr<const cost_models::Calibration> calibration_;
   std::vector<ShownImage> shown_;
 };
 

@@ -31,6 +31,8 @@ RankedTechnique technique_from_json(const Json& row) {
                             .reason = text(row, "reason")};
   if (!row.at("lo_ms").is_null())
     technique.interval_ms = {row.at("lo_ms").get<double>(), row.at("hi_ms").get<double>()};
+  if (const Json low = row.value("aa_lo_ms", Json()); !low.is_null())
+    technique.aa_interval_ms = {low.get<double>(), row.at("aa_hi_ms").get<double>()};
   if (!row.at("shaded_samples").is_null())
     technique.shaded_samples = row.at("shaded_samples").get<std::uint64_t>();
   return technique;
@@ -47,6 +49,8 @@ Table ranking_table(const Ranking& ranking) {
                {"hi_ms", "hi", true},
                {"support", "support"},
                {"aa_ms", "AA ms", true},
+               {"aa_lo_ms", "lo", true},
+               {"aa_hi_ms", "hi", true},
                {"extra_mib", "extra MiB", true},
                {"dram_mb", "DRAM MB", true},
                {"flip_mean", "FLIP", true},
@@ -58,12 +62,13 @@ Table ranking_table(const Ranking& ranking) {
     const auto value = [&](double number, int decimals) -> TableCell {
       return t.runs() ? TableCell{Real{number, decimals}} : TableCell{NotApplicable{}};
     };
-    const auto bound = [&](std::size_t i) -> TableCell {
-      return t.interval_ms ? TableCell{Real{(*t.interval_ms)[i], 3}} : TableCell{NotApplicable{}};
+    const auto bound = [](const std::optional<std::array<double, 2>>& interval, std::size_t i) -> TableCell {
+      return interval ? TableCell{Real{(*interval)[i], 3}} : TableCell{NotApplicable{}};
     };
-    table.rows.push_back({t.technique, t.verdict, t.pareto ? "yes" : "", value(t.frame_ms, 3), bound(0),
-                          bound(1), t.support, value(t.aa_ms, 3), value(t.extra_mib, 1), value(t.dram_mb, 1),
-                          value(t.flip_mean, 4), value(t.psnr_db, 2),
+    table.rows.push_back({t.technique, t.verdict, t.pareto ? "yes" : "", value(t.frame_ms, 3),
+                          bound(t.interval_ms, 0), bound(t.interval_ms, 1), t.support, value(t.aa_ms, 3),
+                          bound(t.aa_interval_ms, 0), bound(t.aa_interval_ms, 1), value(t.extra_mib, 1),
+                          value(t.dram_mb, 1), value(t.flip_mean, 4), value(t.psnr_db, 2),
                           t.runs() ? TableCell{t.shaded_samples} : TableCell{NotApplicable{}}, t.reason});
   }
   return table;

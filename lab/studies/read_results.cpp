@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 LabeledResult read_result(const fs::path& file) try {
-  return {file.parent_path().string(), result_from_json(Json::parse(read_file(file.string())))};
+  return {file.parent_path().string(), result_from_json(Json::parse(read_file(file.string()))), {}};
 } catch (const Json::exception& error) {
   fail("U020", "`" + file.string() + "` is no result of `hwsim run`: " + error.what());
 }
@@ -44,14 +44,15 @@ bool is_result(const std::string& name) {
   return fs::is_directory(name, error) || has_extension(name, ".json");
 }
 
-Comparison compare_results(const std::vector<std::string>& paths) {
+Comparison compare_results(const std::vector<std::string>& paths,
+                           const cost_models::Calibration* calibration) {
   std::vector<LabeledResult> results;
   for (const std::string& path : paths)
     for (LabeledResult& result : read_results(path)) results.push_back(std::move(result));
   if (results.size() < 2)
     fail_usage("U002", "there is nothing to compare `" + paths.front() + "` with", "",
                "give the folders of two runs");
-  return compare(results);
+  return compare(results, calibration);
 }
 
 }  // namespace hwsim::lab

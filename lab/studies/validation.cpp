@@ -16,11 +16,19 @@ Errors make_errors(const Experiment& experiment, const cost_models::Figures& f) 
                 .mape_pct = f.mape_pct,
                 .median_ape_pct = f.median_ape_pct,
                 .kendall = f.kendall,
-                .coverage90_pct = f.coverage90_pct};
+                .coverage90_pct = f.coverage90_pct,
+                .width_ratio = f.width_ratio};
   if (!f.worst) return errors;
   const cost_models::Cell& cell = experiment.cells[f.worst->cell];
   errors.worst = CellError{cell.row.id(), cell_name(cell), f.worst->ape_pct};
   return errors;
+}
+
+RatioErrors make_errors(const cost_models::RatioFigures& f) {
+  return {.pairs = f.pairs,
+          .median_ape_pct = f.median_ape_pct,
+          .coverage90_pct = f.coverage90_pct,
+          .width_ratio = f.width_ratio};
 }
 
 NamedValues<Errors> make_errors(const Experiment& experiment,
@@ -58,7 +66,7 @@ Validation errors_of(std::shared_ptr<const FittedModel> model) {
   for (const cost_models::SplitResult& split : figures.splits)
     validation.splits.push_back({std::string(cost_models::split_name(split.split)),
                                  make_errors(experiment, split.figures),
-                                 make_errors(experiment, split.baselines)});
+                                 make_errors(experiment, split.baselines), make_errors(split.ratio_figures)});
   for (const cost_models::NotRun& n : experiment.not_run)
     validation.not_run.push_back({experiment.cells[n.cell].row.id(), n.reason});
   validation.model = std::move(model);

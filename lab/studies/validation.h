@@ -35,12 +35,22 @@ struct Errors {
   std::optional<CellError> worst{};
   double kendall = 1.0;
   double coverage90_pct = 0.0;
+  double width_ratio = 1.0;  ///< median of high / low of the 90 % intervals
+};
+
+/// Errors of the predicted ratios of two techniques' times, pair by pair.
+struct RatioErrors {
+  std::size_t pairs = 0;
+  double median_ape_pct = 0.0;
+  double coverage90_pct = 0.0;
+  double width_ratio = 1.0;  ///< as of Errors
 };
 
 struct SplitErrors {
   std::string split{};  ///< "leave_scene_out"
   Errors errors{};
   NamedValues<Errors> baselines{};  ///< what anybody could predict without a simulator
+  RatioErrors ratios{};
 };
 
 /// Errors of what is counted, not timed.
@@ -79,6 +89,9 @@ void write_calibration(const FittedModel& model, const OutPlace& place);
 
 /// A row for each split, its baselines below it.
 Table split_table(const Validation& validation);
+
+/// A row for each split: ratios of two techniques' times on one scene and GPU.
+Table ratio_table(const Validation& validation);
 
 /// A row for each paper and each GPU, in sample.
 Table label_table(const Validation& validation);

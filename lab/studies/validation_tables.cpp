@@ -15,6 +15,7 @@ std::vector<TableCell> errors_row(const std::string& name, const Errors& e, bool
           Real{e.median_ape_pct, 1},
           Real{e.kendall, 2},
           intervals ? TableCell{Real{e.coverage90_pct, 0}} : TableCell{NotApplicable{}},
+          intervals ? TableCell{Real{e.width_ratio, 2}} : TableCell{NotApplicable{}},
           e.worst ? fmt::format("{:.0f} % {}", e.worst->ape_pct, e.worst->cell) : std::string()};
 }
 
@@ -25,6 +26,7 @@ Table errors_table(const std::string& first) {
            {"median_ape_pct", "median %", true},
            {"kendall", "Kendall", true},
            {"coverage90_pct", "in 90 % interval", true},
+           {"width_ratio", "its width", true},
            {"worst", "worst cell", false, 60}},
           {}};
 }
@@ -50,6 +52,20 @@ Table split_table(const Validation& validation) {
     for (const auto& [baseline, errors] : split.baselines)
       table.rows.push_back(errors_row("  " + baseline, errors, false));
   }
+  return table;
+}
+
+Table ratio_table(const Validation& validation) {
+  Table table{{{"split", "ratios of techniques"},
+               {"pairs", "pairs", true},
+               {"median_ape_pct", "median %", true},
+               {"coverage90_pct", "in 90 % interval", true},
+               {"width_ratio", "its width", true}},
+              {}};
+  for (const SplitErrors& split : validation.splits)
+    if (const RatioErrors& r = split.ratios; r.pairs > 0)
+      table.rows.push_back({split.split, std::uint64_t{r.pairs}, Real{r.median_ape_pct, 1},
+                            Real{r.coverage90_pct, 0}, Real{r.width_ratio, 2}});
   return table;
 }
 

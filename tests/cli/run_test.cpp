@@ -71,8 +71,8 @@ TEST_F(RunTest, JsonHasTheKeysOfTheContract) {
   EXPECT_EQ(result["gpu"], "gtx980");
   EXPECT_EQ(result["engine"], "queue");
   EXPECT_EQ(result["resolution"], json({64, 48}));
-  expect_keys(result["frame"], {"time_ms", "interval_ms", "support", "memory_mib", "allocated_mib", "dram_mb",
-                                "shaded_samples"});
+  expect_keys(result["frame"], {"time_ms", "interval_ms", "support", "error_sources", "memory_mib",
+                                "allocated_mib", "dram_mb", "shaded_samples"});
   EXPECT_GT(result["frame"]["time_ms"], 0.0);
   expect_keys(result["image"], {"psnr_db", "flip_mean", "rmse"});
   expect_keys(result["emulation"], {"wall_s", "from_cache", "skipped"});

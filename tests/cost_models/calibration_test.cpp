@@ -1,5 +1,6 @@
 // What a fit leaves behind, and errors on data that it did not see, on an experiment whose truth is known.
 #include "cost_models/calibration.h"
+#include "cost_models/intervals.h"
 
 #include <gtest/gtest.h>
 
@@ -78,11 +79,28 @@ TEST_F(CalibrationTest, SimulationBeatsTheSimpleRules) {
   }
 }
 
+TEST_F(CalibrationTest, IntervalsOfRatiosHoldAboutNinetyPercentOfThePairs) {
+  const SplitResult& split = split_of(*validation_, Split::leave_scene_out);
+  ASSERT_EQ(split.ratios.size(), experiment().cells.size() / 4 * 6) << "six pairs of four techniques";
+  EXPECT_GE(split.ratio_figures.coverage90_pct, 80.0);
+  EXPECT_LE(split.ratio_figures.coverage90_pct, 97.0);
+  for (const HeldOutRatio& ratio : split.ratios) {
+    const Cell &first = experiment().cells[ratio.first], &second = experiment().cells[ratio.second];
+    EXPECT_EQ(rank_group(first), rank_group(second));
+    EXPECT_NE(first.run.technique, second.run.technique);
+    EXPECT_DOUBLE_EQ(ratio.published, second.published / first.published);
+    EXPECT_LT(ratio.low, ratio.predicted);
+    EXPECT_GT(ratio.high, ratio.predicted);
+  }
+}
+
 TEST_F(CalibrationTest, JsonHoldsTheCalibrationToTheBit) {
   const Calibration c = make_calibration(experiment(), *validation_);
   const Calibration back = calibration_from_json(to_json(c), "calibration.json");
   EXPECT_EQ(back.covariance, c.covariance);
   EXPECT_EQ(back.quantile90, c.quantile90);
+  EXPECT_EQ(back.ratio_quantile90, c.ratio_quantile90);
+  EXPECT_EQ(back.ratio_log_sd, c.ratio_log_sd);
   EXPECT_EQ(back.held_out_ms, c.held_out_ms);
   ASSERT_EQ(back.parameters.size(), c.parameters.size());
   for (std::size_t i = 0; i < c.parameters.size(); ++i)

@@ -40,5 +40,14 @@ TEST(Statistics, RegressionFindsALine) {
   EXPECT_NEAR(line[2], 3.0, 1e-12);
 }
 
+TEST(Statistics, AFoldsQuantileComesFromTheOthers) {
+  const std::vector<std::string> folds = {"a", "a", "b", "b"};
+  const std::vector<double> values = {1.0, 2.0, 10.0, 20.0};
+  const auto quantiles = quantiles_without(folds, values, 0.9);
+  EXPECT_EQ(quantiles.at("a"), 20.0);
+  EXPECT_EQ(quantiles.at("b"), 2.0);
+  EXPECT_EQ(quantiles_without(std::vector<std::string>{"a"}, std::vector<double>{3.0}, 0.9).at("a"), 3.0);
+}
+
 }  // namespace
 }  // namespace hwsim::cost_models::test

@@ -211,7 +211,7 @@ TEST(Lab, ExplainDividesEachPassAmongUnitsAndTakesThemAway) {
     EXPECT_GT(limiter_share_ratio(explanation), 0.0);
     EXPECT_LE(limiter_share_ratio(explanation), 1.0);
   }
-  EXPECT_EQ(compare(explanations).differences.front().label, "msaa4x on gtx980");
+  EXPECT_EQ(compare(explanations, nullptr).differences.front().label, "msaa4x on gtx980");
 }
 
 TEST(Lab, SweepRunsWhatIsPlannedAndNothingTwice) {
