@@ -26,7 +26,8 @@ Json parameter_json(const CalibratedParameter& p) {
           {"range", {p.low, p.high}},
           {"used", p.used},
           {"at_bound", p.at_bound},
-          {"identified", p.identified}};
+          {"identified", p.identified},
+          {"credible", p.credible}};
 }
 
 CalibratedParameter parameter_from(const Json& json) {
@@ -46,6 +47,7 @@ CalibratedParameter parameter_from(const Json& json) {
   p.used = json.at("used");
   p.at_bound = json.at("at_bound");
   p.identified = json.at("identified");
+  p.credible = json.at("credible");
   return p;
 }
 
@@ -81,7 +83,7 @@ Calibration make_calibration(const Experiment& experiment, const Validation& val
     const FittedParameter& p = experiment.parameters[i];
     const Estimate& e = fit.estimates[i];
     c.parameters.push_back({p.scope, p.member, p.name, p.unit, p.start, p.low, p.high, e.value, e.low90,
-                            e.high90, e.used, e.at_bound, e.identified});
+                            e.high90, e.used, e.at_bound, e.identified, e.credible});
   }
   c.covariance = fit.covariance;
   c.residual_log_sd = fit.residual_log_sd;
@@ -94,9 +96,9 @@ Calibration make_calibration(const Experiment& experiment, const Validation& val
       c.held_out_ms[experiment.cells[held.cell].row.id()] = held.predicted_ms;
   }
   const std::vector<bool> fitted = fitted_cells(experiment);
-  for (std::size_t i = 0; i < fitted.size(); ++i)
-    if (fitted[i])
-      c.techniques[experiment.cells[i].run.gpu].insert(technique_id(experiment.cells[i].run.technique));
+  for (const Replay& replay : experiment.replays)
+    for (const std::size_t cell : replay.cells)
+      if (fitted[cell]) c.techniques[replay.run.gpu].insert(replay.trace->technique);
   c.gpu_keys = hashed_keys();
   for (const GpuConfig& gpu : experiment.gpus)
     if (c.techniques.contains(gpu.id))
@@ -118,6 +120,7 @@ GpuConfig calibrated_gpu(const GpuConfig& documented, const Calibration& calibra
     origin.provenance = Provenance::fitted;
     origin.source = p->scope == Scope::all ? "hwsim fit, all GPUs" : "hwsim fit";
     if (p->at_bound) origin.source += ", at the end of its range";
+    if (!p->credible) origin.source += ", not credible";
     if (!p->identified) origin.source += ", not identified by the data";
     origin.interval = {std::min(p->low90, p->value), std::max(p->high90, p->value)};
   }
@@ -183,7 +186,7 @@ std::optional<Fit> fit_of(const Calibration& calibration, const std::vector<Fitt
   Fit fit;
   for (const CalibratedParameter& p : calibration.parameters) {
     fit.log_values.push_back(std::log(p.value));
-    fit.estimates.push_back({p.value, p.low90, p.high90, p.used, p.at_bound, p.identified});
+    fit.estimates.push_back({p.value, p.low90, p.high90, p.used, p.at_bound, p.identified, p.credible});
   }
   fit.covariance = calibration.covariance;
   fit.residual_log_sd = calibration.residual_log_sd;

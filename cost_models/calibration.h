@@ -18,7 +18,7 @@ struct CalibratedParameter {
   std::string member, name, unit;
   double start = 0.0, low = 0.0, high = 0.0;  ///< declared
   double value = 0.0, low90 = 0.0, high90 = 0.0;
-  bool used = false, at_bound = false, identified = true;
+  bool used = false, at_bound = false, identified = true, credible = true;
 };
 
 struct Calibration {
@@ -29,7 +29,7 @@ struct Calibration {
   std::map<std::string, double> quantile90;                 ///< by split
   double ratio_log_sd = 0.0;                                ///< as Validation has it
   std::map<std::string, double> ratio_quantile90;           ///< by split
-  std::map<std::string, std::set<std::string>> techniques;  ///< by GPU: those with fitted rows
+  std::map<std::string, std::set<std::string>> techniques;  ///< by GPU: those with fitted rows, "agaa:c=4"
   std::map<std::string, double> held_out_ms;                ///< by row: by the fit that did not see its scene
   std::set<std::string> gpu_keys;                           ///< that GPUs had when they were fitted
   std::map<std::string, std::string> gpu_hashes;  ///< for each calibrated GPU the hash of the values of these

@@ -80,11 +80,34 @@ double condition_of(const Eigen::MatrixXd& information) {
   return std::sqrt(values.maxCoeff() / std::max(values.minCoeff(), 1e-300));
 }
 
-/// Slope and curvature of the prior's part of the cost.
-std::pair<double, double> prior_terms(const FittedParameter& p, double log_value) {
-  if (p.prior_log_sd <= 0.0) return {0.0, 0.0};
-  const double variance = p.prior_log_sd * p.prior_log_sd;
-  return {(log_value - std::log(p.start)) / variance, 1.0 / variance};
+/// What the priors add to slope and curvature of the cost.
+struct PriorTerms {
+  Eigen::VectorXd slope;
+  Eigen::MatrixXd curvature;
+};
+
+PriorTerms prior_terms(const Experiment& experiment, const std::vector<bool>& used,
+                       const std::vector<double>& log_values) {
+  const auto n = static_cast<Eigen::Index>(used.size());
+  PriorTerms terms{Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
+  for (const Prior& prior : priors_of(experiment.parameters, used)) {
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(n);
+    row(static_cast<Eigen::Index>(prior.of)) = 1.0 / prior.log_sd;
+    if (prior.around) row(static_cast<Eigen::Index>(*prior.around)) = -1.0 / prior.log_sd;
+    terms.slope += prior.offset(log_values) * row;
+    terms.curvature += row * row.transpose();
+  }
+  return terms;
+}
+
+/// The part of a matrix of all parameters that belongs to some.
+Eigen::MatrixXd part_of(const Eigen::MatrixXd& all, const std::vector<std::size_t>& some) {
+  Eigen::MatrixXd part(static_cast<Eigen::Index>(some.size()), static_cast<Eigen::Index>(some.size()));
+  for (std::size_t a = 0; a < some.size(); ++a)
+    for (std::size_t b = 0; b < some.size(); ++b)
+      part(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) =
+          all(static_cast<Eigen::Index>(some[a]), static_cast<Eigen::Index>(some[b]));
+  return part;
 }
 
 /// The cost that the solver minimizes.
@@ -92,10 +115,9 @@ double cost_of(const Experiment& experiment, const std::vector<bool>& used, cons
                const Linearization& linear, const Fit& fit) {
   const double scale = options.robust_log / options.noise_log_sd;
   double sum = scale * scale * linear.loss;
-  for (std::size_t k = 0; k < used.size(); ++k) {
-    if (!used[k]) continue;
-    const auto [slope, curvature] = prior_terms(experiment.parameters[k], fit.log_values[k]);
-    if (curvature > 0.0) sum += slope * slope / curvature;
+  for (const Prior& prior : priors_of(experiment.parameters, used)) {
+    const double offset = prior.offset(fit.log_values);
+    sum += offset * offset;
   }
   return 0.5 * sum;
 }
@@ -105,23 +127,22 @@ double gain_of(const Experiment& experiment, const std::vector<bool>& used,
                const std::vector<std::size_t>& free, const FitOptions& options, const Linearization& linear,
                const Fit& fit) {
   const double noise = options.noise_log_sd * options.noise_log_sd;
+  const PriorTerms priors = prior_terms(experiment, used, fit.log_values);
   Eigen::VectorXd slope = linear.rows.transpose() * linear.residuals / noise;
-  Eigen::MatrixXd curvature = linear.rows.transpose() * linear.rows / noise;
+  const Eigen::MatrixXd curvature =
+      linear.rows.transpose() * linear.rows / noise + part_of(priors.curvature, free);
   std::vector<bool> bound = used;
   for (std::size_t k = 0; k < free.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    const auto [prior_slope, prior_curvature] =
-        prior_terms(experiment.parameters[free[k]], fit.log_values[free[k]]);
-    slope(i) += prior_slope;
-    curvature(i, i) += prior_curvature;
+    slope(static_cast<Eigen::Index>(k)) += priors.slope(static_cast<Eigen::Index>(free[k]));
     bound[free[k]] = false;
   }
   double gain = free.empty() ? 0.0 : 0.5 * slope.dot(inverse(curvature) * slope);
   for (std::size_t k = 0; k < bound.size(); ++k) {
     if (!bound[k]) continue;
     const FittedParameter& p = experiment.parameters[k];
-    const auto [prior_slope, prior_curvature] = prior_terms(p, fit.log_values[k]);
-    const double g = linear.slope[k] / noise + prior_slope, h = linear.curvature[k] / noise + prior_curvature;
+    const auto i = static_cast<Eigen::Index>(k);
+    const double g = linear.slope[k] / noise + priors.slope(i);
+    const double h = linear.curvature[k] / noise + priors.curvature(i, i);
     const bool at_low = fit.log_values[k] < 0.5 * (std::log(p.low) + std::log(p.high));
     if (h > 0.0 && (at_low ? g < 0.0 : g > 0.0)) gain += 0.5 * g * g / h;
   }
@@ -141,12 +162,9 @@ void add_covariance(const Experiment& experiment, const std::vector<bool>& use, 
   fit.cost = cost_of(experiment, used, options, linear, fit);
   fit.gain_ratio = fit.cost > 0.0 ? gain_of(experiment, used, free, options, linear, fit) / fit.cost : 0.0;
   if (free.empty()) return;
-  Eigen::MatrixXd information =
-      linear.rows.transpose() * linear.rows / (fit.residual_log_sd * fit.residual_log_sd);
-  for (std::size_t k = 0; k < free.size(); ++k) {
-    const double sd = experiment.parameters[free[k]].prior_log_sd;
-    if (sd > 0.0) information(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) += 1.0 / (sd * sd);
-  }
+  const Eigen::MatrixXd information =
+      linear.rows.transpose() * linear.rows / (fit.residual_log_sd * fit.residual_log_sd) +
+      part_of(prior_terms(experiment, used, fit.log_values).curvature, free);
   fit.condition = condition_of(information);
   const Eigen::MatrixXd covariance = inverse(information);
   for (std::size_t a = 0; a < free.size(); ++a)

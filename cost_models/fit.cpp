@@ -66,6 +66,7 @@ class CellResidual : public ceres::CostFunction {
   std::vector<std::size_t> parameters_;
 };
 
+/// A parameter about a known center.
 class PriorResidual : public ceres::SizedCostFunction<1, 1> {
  public:
   PriorResidual(double center, double sd) : center_(center), sd_(sd) {}
@@ -77,6 +78,22 @@ class PriorResidual : public ceres::SizedCostFunction<1, 1> {
 
  private:
   double center_, sd_;
+};
+
+/// A parameter about another one, which is fitted, too.
+class PooledResidual : public ceres::SizedCostFunction<1, 1, 1> {
+ public:
+  explicit PooledResidual(double sd) : sd_(sd) {}
+  bool Evaluate(double const* const* values, double* residuals, double** jacobians) const override {
+    residuals[0] = (values[0][0] - values[1][0]) / sd_;
+    if (jacobians == nullptr) return true;
+    if (jacobians[0] != nullptr) jacobians[0][0] = 1.0 / sd_;
+    if (jacobians[1] != nullptr) jacobians[1][0] = -1.0 / sd_;
+    return true;
+  }
+
+ private:
+  double sd_;
 };
 
 /// Reports, and ends a start that has arrived where a finished one did: it is as low and hardly moves.
@@ -132,6 +149,7 @@ class Solve {
     const std::vector<bool> used = used_parameters(experiment_, use);
     for (std::size_t i = 0; i < values_.size(); ++i)
       if (used[i]) add_parameter(problem, i);
+    for (const Prior& prior : priors_of(experiment_.parameters, used)) add_prior(problem, prior);
     for (std::size_t cell = 0; cell < use.size(); ++cell)
       if (use[cell]) add_cell(problem, cell, options, loss);
     ProgressCallback progress(options, index, known_cost);
@@ -150,8 +168,15 @@ class Solve {
     problem.AddParameterBlock(&values_[i], 1);
     problem.SetParameterLowerBound(&values_[i], 0, std::log(p.low));
     problem.SetParameterUpperBound(&values_[i], 0, std::log(p.high));
-    if (p.prior_log_sd > 0.0)
-      problem.AddResidualBlock(new PriorResidual(std::log(p.start), p.prior_log_sd), nullptr, &values_[i]);
+  }
+
+  void add_prior(ceres::Problem& problem, const Prior& prior) {
+    if (prior.around)
+      problem.AddResidualBlock(new PooledResidual(prior.log_sd), nullptr, &values_[prior.of],
+                               &values_[*prior.around]);
+    else
+      problem.AddResidualBlock(new PriorResidual(prior.log_center, prior.log_sd), nullptr,
+                               &values_[prior.of]);
   }
 
   void add_cell(ceres::Problem& problem, std::size_t cell, const FitOptions& options, Loss loss) {
@@ -211,6 +236,28 @@ void set_typical_factors(const Experiment& experiment, const std::vector<bool>& 
   }
 }
 
+/// What no fitted cell shows of a GPU is what the others have, as far as they tell.
+void set_pooled(const Experiment& experiment, const std::vector<bool>& used, Fit& result) {
+  const std::size_t n = experiment.parameters.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const FittedParameter& p = experiment.parameters[i];
+    if (used[i] || !p.pooled_with || !used[*p.pooled_with]) continue;
+    const std::size_t all = *p.pooled_with;
+    result.log_values[i] = std::clamp(result.log_values[all], std::log(p.low), std::log(p.high));
+    for (std::size_t k = 0; k < n; ++k)
+      result.covariance[i * n + k] = result.covariance[k * n + i] = result.covariance[all * n + k];
+    result.covariance[i * n + i] = result.covariance[all * n + all] + p.prior_log_sd * p.prior_log_sd;
+  }
+}
+
+/// An end of the range that is also the documented value is no sign of a fault.
+bool is_credible(const FittedParameter& p, const Estimate& e, const std::vector<double>& log_values) {
+  constexpr double kFarInPriors = 2.0;
+  if (e.at_bound && std::abs(e.value / p.start - 1.0) > 1e-6) return false;
+  return !p.pooled_with ||
+         std::abs(std::log(e.value) - log_values[*p.pooled_with]) < kFarInPriors * p.prior_log_sd;
+}
+
 void set_estimates(const Experiment& experiment, const std::vector<bool>& used, Fit& result) {
   constexpr double kNormal90 = 1.6448536269514722;
   const std::size_t n = experiment.parameters.size();
@@ -228,6 +275,7 @@ void set_estimates(const Experiment& experiment, const std::vector<bool>& used, 
     e.high90 = std::min(p.high, e.value * std::exp(kNormal90 * sd));
     const double without_data = p.prior_log_sd > 0.0 ? p.prior_log_sd : range / std::sqrt(12.0);
     e.identified = !used[i] || e.at_bound || sd < 0.8 * without_data;
+    e.credible = p.scope == Scope::scene || !used[i] || is_credible(p, e, result.log_values);
   }
 }
 
@@ -238,6 +286,7 @@ void describe(const Experiment& experiment, const std::vector<bool>& use, const 
   result.used_parameters = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
   add_covariance(experiment, use, used, options, result);
   set_typical_factors(experiment, used, result);
+  set_pooled(experiment, used, result);
   set_estimates(experiment, used, result);
 }
 
@@ -255,6 +304,8 @@ std::vector<bool> used_parameters(const Experiment& experiment, const std::vecto
   for (std::size_t cell = 0; cell < use.size(); ++cell)
     if (use[cell])
       for (const std::size_t i : parameters_of(experiment, cell)) used[i] = true;
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (const auto& all = experiment.parameters[i].pooled_with; used[i] && all) used[*all] = true;
   return used;
 }
 

@@ -27,6 +27,8 @@ struct Estimate {
   bool used = false;  ///< some fitted cell depends on it; otherwise it kept its start
   bool at_bound = false;
   bool identified = true;  ///< the data narrow it down further than its prior or its range
+  /// As a number of hardware: neither pushed to an end of its range, nor far from what the other GPUs have.
+  bool credible = true;
 };
 
 struct CorrelatedPair {

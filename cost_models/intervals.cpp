@@ -35,16 +35,30 @@ double widest(const std::map<std::string, double>& quantiles, std::initializer_l
   return widest;
 }
 
+/// Whether a frame's time on the GPU depends on the parameter.
+bool of_interval(const Calibration& calibration, const CalibratedParameter& p, const std::string& gpu) {
+  return p.name != kPresent && concerns(calibration, p, gpu);
+}
+
+/// Whether no fitted number that a frame depends on has paid for what the model or a scene lacks.
+bool credible(const Calibration& calibration, const std::string& gpu) {
+  return std::ranges::all_of(calibration.parameters, [&](const CalibratedParameter& p) {
+    return p.credible || !p.used || !of_interval(calibration, p, gpu);
+  });
+}
+
 Support support_of(const Calibration& calibration, const GpuConfig& gpu, const std::string& hash,
                    const std::string& technique) {
-  const auto fitted = [&](const std::string& id) {
-    const auto found = calibration.techniques.find(id);
-    return found != calibration.techniques.end() && found->second.contains(technique_id(technique));
+  const auto same_kind = [&](const std::string& other) {
+    return technique_id(other) == technique_id(technique);
   };
-  const bool elsewhere = std::any_of(calibration.techniques.begin(), calibration.techniques.end(),
-                                     [&](const auto& entry) { return fitted(entry.first); });
-  if (changed(calibration, gpu, hash) || !elsewhere) return Support::extrapolated;
-  return fitted(gpu.id) ? Support::calibrated : Support::interpolated;
+  const bool somewhere = std::ranges::any_of(calibration.techniques, [&](const auto& entry) {
+    return std::ranges::any_of(entry.second, same_kind);
+  });
+  if (changed(calibration, gpu, hash) || !somewhere) return Support::extrapolated;
+  const auto here = calibration.techniques.find(gpu.id);
+  const bool fitted = here != calibration.techniques.end() && here->second.contains(technique);
+  return fitted && credible(calibration, gpu.id) ? Support::calibrated : Support::interpolated;
 }
 
 /// No frame of a user is a published one: the narrowest interval is that of a scene that the fit did not see.
@@ -54,11 +68,6 @@ double interval_quantile(const std::map<std::string, double>& quantiles, Support
   if (support != Support::extrapolated) return narrowest;
   return std::max(narrowest, widest(quantiles, {Split::leave_technique_out, Split::rate_extrapolation,
                                                 Split::leave_gpu_out}));
-}
-
-/// Whether a frame's time on the GPU depends on the parameter.
-bool of_interval(const Calibration& calibration, const CalibratedParameter& p, const std::string& gpu) {
-  return p.name != kPresent && concerns(calibration, p, gpu);
 }
 
 std::string id_of(const CalibratedParameter& parameter) { return parameter.member + "." + parameter.name; }

@@ -34,10 +34,10 @@ struct TimedFrame {
 /// The fitted keys of a GPU, which its intervals come from.
 std::vector<std::string> interval_keys(const Calibration& calibration, const std::string& gpu);
 
-/// 90 % interval of a frame; none on a GPU that was not fitted. calibrated: technique and GPU as fitted;
-/// interpolated: the technique was fitted on another GPU; extrapolated: a technique without published times,
-/// or changed numbers of the GPU. (A key that came after the fit changes a GPU when an overlay or the command
-/// line sets it.)
+/// 90 % interval of a frame; none on a GPU that was not fitted. calibrated: the technique with these
+/// parameters was fitted on this GPU, all of whose numbers are credible; interpolated: it was fitted with
+/// other parameters or on another GPU; extrapolated: a technique without published times, or changed numbers
+/// of the GPU. (A key that came after the fit changes a GPU when an overlay or the command line sets it.)
 FrameInterval frame_interval(const Calibration& calibration, const TimedFrame& frame, const GpuConfig& gpu,
                              const std::string& technique);
 

@@ -35,10 +35,13 @@ class Reader {
       parameters.push_back(parameter);
     }
     if (!problems_.empty()) throw InputError(problems_);
-    for (FittedParameter& p : parameters)
-      for (const FittedParameter& own : parameters)
-        if (p.scope == Scope::all && own.scope == Scope::gpu && own.name == p.name)
-          p.own_of.push_back(own.member);
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+      for (FittedParameter& own : parameters) {
+        FittedParameter& p = parameters[i];
+        if (p.scope != Scope::all || own.scope != Scope::gpu || own.name != p.name) continue;
+        p.own_of.push_back(own.member);
+        own.pooled_with = i;
+      }
     return parameters;
   }
 
@@ -124,6 +127,18 @@ std::string_view scope_name(Scope scope) {
       return "scene";
   }
   return "gpu";
+}
+
+double Prior::offset(const std::vector<double>& log_values) const {
+  return (log_values[of] - (around ? log_values[*around] : log_center)) / log_sd;
+}
+
+std::vector<Prior> priors_of(const std::vector<FittedParameter>& parameters, const std::vector<bool>& used) {
+  std::vector<Prior> priors;
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (const FittedParameter& p = parameters[i]; used[i] && p.prior_log_sd > 0.0)
+      priors.push_back({i, p.pooled_with, std::log(p.start), p.prior_log_sd});
+  return priors;
 }
 
 bool FittedParameter::concerns(const std::string& gpu, const std::string& scene) const {

@@ -2,6 +2,7 @@
 // What the fit may move: physical numbers, each with a range, a start and a scope, declared in
 // configs/calibration/parameters.csv. None belongs to a cell, a technique or a row.
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,12 +31,27 @@ struct FittedParameter {
   std::string member;  ///< GPU or scene; "all" for scope all
   std::string name;    ///< key of a GPU file, or a factor of a scene
   double start = 0.0, low = 0.0, high = 0.0;
-  double prior_log_sd = 0.0;  ///< standard deviation of ln(value / start); 0: no prior
+  double prior_log_sd = 0.0;  ///< standard deviation of ln(value / center); 0: no prior
   std::string unit, meaning;
   std::string id() const { return member + "." + name; }
   bool concerns(const std::string& gpu, const std::string& scene) const;
   std::vector<std::string> own_of;  ///< scope all: GPUs that have a parameter of this name themselves
+  /// The center of the prior: the parameter of the same name for all GPUs (partial pooling: a GPU differs
+  /// from the others by about the prior's factor), or none: the start.
+  std::optional<std::size_t> pooled_with{};
 };
+
+/// The prior of a parameter, as the fit uses it: ln(value) is about a center that is known, or fitted itself.
+struct Prior {
+  std::size_t of = 0;
+  std::optional<std::size_t> around;  ///< a parameter
+  double log_center = 0.0;            ///< where there is none
+  double log_sd = 0.0;
+  double offset(const std::vector<double>& log_values) const;  ///< from the center, in units of log_sd
+};
+
+/// Priors of the parameters that `used` marks.
+std::vector<Prior> priors_of(const std::vector<FittedParameter>& parameters, const std::vector<bool>& used);
 
 /// Reads the declarations. "file" for start or range stands for what the GPU's file says (value, interval).
 /// Throws InputError M003 with every mistake.

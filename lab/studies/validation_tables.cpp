@@ -33,7 +33,8 @@ Table errors_table(const std::string& first) {
 
 std::string state_of(const cost_models::Estimate& e) {
   if (!e.used) return "no data";
-  if (e.at_bound) return "at bound";
+  if (!e.credible) return e.at_bound ? "not credible: at bound" : "not credible: far from the others";
+  if (e.at_bound) return "at bound, as documented";
   return e.identified ? "" : "not identified";
 }
 

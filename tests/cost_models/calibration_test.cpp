@@ -175,12 +175,13 @@ TEST_F(CalibrationTest, FramesCarryIntervalsThatWidenWithDistance) {
   const GpuConfig gpu = calibrated_gpu(experiment().gpus.front(), c);
   const auto trace = random_trace(4711);
   const auto width = [](const FrameInterval& i) { return (*i.interval_ns)[1] / (*i.interval_ns)[0]; };
-  const FrameInterval known = interval_of(c, *trace, gpu, "t1:x=2");
+  const FrameInterval known = interval_of(c, *trace, gpu, "t1");
   const FrameInterval unknown = interval_of(c, *trace, gpu, "other");
   GpuConfig changed = gpu;
   changed.dram_bandwidth_gb_s *= 2.0;
   const FrameInterval what_if = interval_of(c, *trace, changed, "t1");
   EXPECT_EQ(known.support, Support::calibrated);
+  EXPECT_EQ(interval_of(c, *trace, gpu, "t1:x=2").support, Support::interpolated) << "other parameters";
   EXPECT_EQ(unknown.support, Support::extrapolated);
   EXPECT_EQ(what_if.support, Support::extrapolated);
   ASSERT_TRUE(known.interval_ns && unknown.interval_ns && what_if.interval_ns);

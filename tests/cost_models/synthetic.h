@@ -94,8 +94,10 @@ inline Synthetic make_synthetic(int scenes = 3, int techniques = 4) {
         replay.gpu = g;
         replay.run = {name, "0", "t" + std::to_string(technique), e.gpus[g].id,
                       64,   64,  "scene.shadows=false",           ""};
-        replay.trace = random_trace(1000 * g + 100 * static_cast<std::size_t>(scene) +
-                                    static_cast<std::size_t>(technique) + 1);
+        WorkTrace trace = *random_trace(1000 * g + 100 * static_cast<std::size_t>(scene) +
+                                        static_cast<std::size_t>(technique) + 1);
+        trace.technique = replay.run.technique;
+        replay.trace = std::make_shared<WorkTrace>(std::move(trace));
         for (const PassWork& pass : replay.trace->passes) {
           Cell cell;
           cell.row.document = "SYN";
