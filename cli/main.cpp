@@ -55,7 +55,8 @@ ExitStatus dispatch(const Command& command, Context& context) {
                                [&](const FitArguments& o) { return fit(o, context); },
                                [&](const ValidateArguments& o) { return validate(o, context); },
                                [&](const ReproduceArguments& o) { return reproduce(o, context); },
-                               [&](const CompletionArguments& o) { return completion(o, context); }},
+                               [&](const CompletionArguments& o) { return completion(o, context); },
+                               [&](const GpuNewArguments& o) { return gpu_new(o, context); }},
                     command);
 }
 

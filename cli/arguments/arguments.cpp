@@ -55,6 +55,7 @@ struct Parser {
   ValidateArguments validate;
   ReproduceArguments reproduce;
   CompletionArguments completion;
+  GpuNewArguments gpu_new;
 
   Parser();
   Parser(const Parser&) = delete;
@@ -74,6 +75,7 @@ struct Parser {
   void add_reference();
   void add_list_and_show();
   void add_scene();
+  void add_gpu();
   void add_config();
   void add_cache();
   void add_calibration();
@@ -187,6 +189,31 @@ void Parser::add_scene() {
   add_common(check, scene_check.common);
 }
 
+void Parser::add_gpu() {
+  CLI::App& parent = add(app, "gpu", kHelpGpu, nullptr);
+  parent.require_subcommand(1);
+  CLI::App& sub = add(parent, "new", kHelpGpuNew, [this] { return Command(gpu_new); });
+  sub.add_option("NAME", gpu_new.sheet.id, "What the GPU is called")->required()->type_name(" ");
+  sub.add_option("--like", gpu_new.like, "A GPU of the same kind, which the file extends")
+      ->required()
+      ->type_name("GPU");
+  sub.add_option("--title", gpu_new.sheet.title, "Its name for people; default NAME")->type_name("TEXT");
+  const auto number = [&](const std::string& flags, std::optional<double>& target, const std::string& text,
+                          const std::string& unit) { sub.add_option(flags, target, text)->type_name(unit); };
+  number("--sms,--cus,--cores", gpu_new.sheet.cores, "SMs, compute units: what `shader_cores` counts", "N");
+  number("--rops", gpu_new.sheet.rops, "Pixels that the ROPs write in a clock", "N");
+  number("--tmus", gpu_new.sheet.tmus, "Bilinear probes in a clock", "N");
+  number("--gpcs,--rasterizers", gpu_new.sheet.rasterizers, "GPCs, shader engines: rasterizers", "N");
+  number("--clock", gpu_new.sheet.clock_mhz, "Clock of the core", "MHZ");
+  number("--bandwidth", gpu_new.sheet.bandwidth_gb_s, "Of the DRAM, 1e9 bytes a second", "GB/S");
+  sub.add_option("--l2", gpu_new.l2, "Size of L2: 512K, 36M")->type_name("SIZE");
+  sub.add_option("--infinity-cache,--llc", gpu_new.llc, "Size of the cache between L2 and DRAM")
+      ->type_name("SIZE");
+  sub.add_option("-o,--out", gpu_new.out, "The file; default NAME.toml")->type_name("FILE");
+  sub.add_flag("--force", gpu_new.force, "Replace the file");
+  add_common(sub, gpu_new.common);
+}
+
 void Parser::add_config() {
   using Action = ConfigArguments::Action;
   CLI::App& parent = add(app, "config", kHelpConfig, nullptr);
@@ -285,6 +312,7 @@ Parser::Parser() {
   add_reference();
   add_list_and_show();
   add_scene();
+  add_gpu();
   add_config();
   add_rest();
   add_cache();

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "lab/catalog/data_sheet.h"
 #include "lab/request/request.h"
 #include "lab/results/run_directory.h"
 
@@ -119,6 +120,15 @@ struct ConfigArguments {
   std::vector<std::string> overlays, sets;
 };
 
+/// A GPU file from the numbers of a data sheet.
+struct GpuNewArguments {
+  CommonArguments common;
+  DataSheet sheet;
+  std::string like, out;
+  std::string l2, llc;  ///< sizes as written: "36M"
+  bool force = false;
+};
+
 struct DoctorArguments {
   CommonArguments common;
 };
@@ -169,6 +179,6 @@ using Command =
     std::variant<PrintText, RunArguments, ExplainArguments, RankArguments, CompareArguments, SweepArguments,
                  ReferenceArguments, ListArguments, ShowArguments, SceneCheckArguments, ConfigArguments,
                  DoctorArguments, HelpArguments, CacheArguments, FitArguments, ValidateArguments,
-                 ReproduceArguments, CompletionArguments>;
+                 ReproduceArguments, CompletionArguments, GpuNewArguments>;
 
 }  // namespace hwsim::cli

@@ -88,6 +88,19 @@ inline constexpr std::string_view kHelpSceneCheck = R"(Examples:
 
 Loads scenes, counts what is in them, and lists what the loader ignored or changed.)";
 
+inline constexpr std::string_view kHelpGpu = R"(Examples:
+  hwsim gpu new rtx4070 --like rtx4090 --sms 46 --rops 64 --tmus 184 --clock 2475 --bandwidth 504 --l2 36M --force
+  hwsim gpu new cut --like gtx980 --sms 13 --rops 56 --out cut.toml --force
+
+Makes GPU files.)";
+
+inline constexpr std::string_view kHelpGpuNew = R"(Examples:
+  hwsim gpu new rtx4070 --like rtx4090 --sms 46 --rops 64 --tmus 184 --clock 2475 --bandwidth 504 --l2 36M --force
+  hwsim gpu new cut --like gtx980 --sms 13 --rops 56 --out cut.toml --force
+
+Writes a GPU file from what a data sheet prints, over a GPU of the same kind. Rates that depend
+on a size that changes are scaled with it, and listed with the interval that a guess has.)";
+
 inline constexpr std::string_view kHelpConfig = R"(Examples:
   hwsim config check gtx980
   hwsim config show gtx980 --origin

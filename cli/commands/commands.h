@@ -17,6 +17,7 @@ ExitStatus list(const ListArguments& options, Context& context);
 ExitStatus show_entry(const ShowArguments& options, Context& context);
 ExitStatus scene_check(const SceneCheckArguments& options, Context& context);
 ExitStatus config(const ConfigArguments& options, Context& context);
+ExitStatus gpu_new(const GpuNewArguments& options, Context& context);
 ExitStatus doctor(const DoctorArguments& options, Context& context);
 ExitStatus help(const HelpArguments& options, Context& context);
 ExitStatus cache(const CacheArguments& options, Context& context);

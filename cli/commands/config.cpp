@@ -2,6 +2,7 @@
 #include "cli/commands/lab_options.h"
 #include "cli/terminal/answer.h"
 #include "lab/base/messages.h"
+#include "lab/catalog/data_sheet.h"
 #include "lab/catalog/gpu_view.h"
 #include "lab/request/run_file.h"
 #include "lab/results/run_files.h"
@@ -10,7 +11,7 @@ namespace hwsim::cli {
 namespace {
 
 /// Every file is looked at before the first mistake is reported. A file of kind "run" is one too.
-ExitStatus check(const ConfigArguments& options, const ConfigFolder& folder) {
+ExitStatus check(const ConfigArguments& options, const ConfigFolder& folder, Log& log) {
   std::vector<Diagnostic> problems;
   Table table{{{"file", "file"}, {"id", "id"}, {"state", "state"}}, {}};
   for (const std::string& name : options.names) try {
@@ -18,7 +19,9 @@ ExitStatus check(const ConfigArguments& options, const ConfigFolder& folder) {
         load_gpu_from_options(folder, read_run_file(name).gpus.front(), {}, {});
         table.rows.push_back({name, "run", "ok"});
       } else {
-        table.rows.push_back({name, load_gpu_from_options(folder, name, {}, {}).id, "ok"});
+        const GpuConfig gpu = load_gpu_from_options(folder, name, {}, {});
+        for (const Diagnostic& warning : kept_rates(gpu)) log.report(warning);
+        table.rows.push_back({name, gpu.id, "ok"});
       }
     } catch (const InputError& error) {
       problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
@@ -46,7 +49,7 @@ ExitStatus config(const ConfigArguments& options, Context& context) {
   };
   switch (options.action) {
     case Action::check:
-      return check(options, folder);
+      return check(options, folder, context.log);
     case Action::show:
       if (options.common.formats.empty())
         write_output(show(load(0), options.origin));

@@ -255,6 +255,10 @@ std::span<const ConfigCode> config_codes() {
        "{ value, provenance, source, interval = [low, high] } is what a value may carry."},
       {"C023", "two GPUs of one name",
        "Their ids name the same folder, so that the results of one would overwrite those of the other."},
+      {"C024", "rate of another chip",
+       "A file changes the number of cores, ROPs or rasterizers, or the bandwidth, and keeps a rate that "
+       "goes with it "
+       "from the GPU that it extends."},
   };
   return kCodes;
 }

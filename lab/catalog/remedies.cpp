@@ -39,6 +39,7 @@ constexpr std::array kRemedies = {
     Remedy{"C021", "write one value: true, 12, 0.5 or a word"},
     Remedy{"C022", "write a plain value, or { value = 1, provenance = \"assumed\" }"},
     Remedy{"C023", "give one of the files another id"},
+    Remedy{"C024", "write the rate into the file, too, or begin with `hwsim gpu new`"},
     Remedy{"G001", kReportTechnique},
     Remedy{"G002", "1, 2, 4, 8, 16 or 32 samples"},
     Remedy{"G003",

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "hwsim/base/units_of_measure.h"
+#include "lab/catalog/data_sheet.h"
 #include "pipeline/image/frame_check.h"
 #include "pipeline/scene/scene.h"
 
@@ -59,6 +60,7 @@ const PassTiming& slowest_pass(const FrameTiming& timing) {
 std::vector<Diagnostic> result_warnings(const PointResult& point) {
   std::vector<Diagnostic> warnings =
       algos::frame_notes(*point.technique, {point.emulation->trace, point.surfaces});
+  for (Diagnostic& warning : kept_rates(*point.gpu)) warnings.push_back(std::move(warning));
   if (!draws_a_scene(point.emulation->trace)) return warnings;
   const auto look = pipeline::check_frame(point.emulation->color, pipeline::Scene{}.background);
   warnings.insert(warnings.end(), look.begin(), look.end());
