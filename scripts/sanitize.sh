@@ -30,6 +30,7 @@ export UBSAN_OPTIONS=print_stacktrace=1
 # The leak check of clang 14 walks tables of thread-local memory that threads which have ended may have left half freed, and
 # crashes now and then ("Tracer caught signal 11", mended by https://reviews.llvm.org/D147459). It does not without the tables.
 export ASAN_OPTIONS=intercept_tls_get_addr=0
+export TSAN_OPTIONS=suppressions=$PWD/tests/support/tsan.supp
 cmake --preset "$preset"
 if [ "${2:-}" = all ]; then
   cmake --build --preset "$preset" --parallel "$jobs"
