@@ -57,6 +57,12 @@ class ExplanationSink : public RunSink {
   std::vector<Explanation> explanations;
 };
 
+class FrameSink : public RunSink {
+ public:
+  void point(const PointResult& point, const RunContext& run) override { frame = kept_frame(point, run); }
+  KeptFrame frame;
+};
+
 /// Neither images nor what they would be compared with.
 RunPlan numbers_only(RunPlan plan) {
   plan.images = false;
@@ -87,6 +93,44 @@ const cost_models::Calibration* Lab::calibration() { return session_->files().ca
 
 RunPlan Lab::plan(const Request& request, std::vector<Diagnostic>& problems) {
   return make_plan(request, session_->files(), problems);
+}
+
+RunPlan Lab::plan(const Request& request, const std::vector<GpuChoice>& gpus,
+                  std::vector<Diagnostic>& problems) {
+  Request shared = request;
+  shared.gpus.clear();
+  RunPlan plan = make_plan(shared, session_->files(), problems);
+  for (GpuChoice choice : gpus) try {
+      choice.overlays.insert(choice.overlays.end(), request.overlays.begin(), request.overlays.end());
+      choice.sets.insert(choice.sets.end(), request.sets.begin(), request.sets.end());
+      plan.gpus.push_back(gpu(choice));
+    } catch (const InputError& error) {
+      append(problems, error);
+    }
+  return plan;
+}
+
+GpuConfig Lab::gpu(const GpuChoice& choice) { return session_->files().gpu(choice); }
+
+KeptFrame Lab::emulate(const RunPlan& plan) {
+  if (plan.techniques.size() != 1 || plan.gpus.size() != 1)
+    fail_usage("U004", "a frame is of one technique and one GPU", "", "one of each");
+  FrameSink sink;
+  run(plan, &sink);
+  return std::move(sink.frame);
+}
+
+KeptFrame Lab::frame_for(const KeptFrame& frame, const GpuConfig& gpu) {
+  if (is_work_of(frame, gpu)) return frame;
+  RunPlan plan = frame.plan;
+  plan.gpus = {gpu};
+  return emulate(plan);
+}
+
+std::vector<VariantTime> Lab::time_variants(const KeptFrame& frame, const GpuChoice& gpu,
+                                            const PointSettings& each) {
+  return lab::time_variants(frame, {session_->files().gpu_files(gpu), gpu.sets, each}, session_->jobs(),
+                            session_->observer());
 }
 
 Run Lab::run(const Request& request, RunSink* sink) {

@@ -12,11 +12,13 @@
 #include "lab/results/result.h"
 #include "lab/studies/comparison.h"
 #include "lab/studies/explanation.h"
+#include "lab/studies/kept_frame.h"
 #include "lab/studies/ranking.h"
 #include "lab/studies/reproduction.h"
 #include "lab/studies/self_check.h"
 #include "lab/studies/sweep.h"
 #include "lab/studies/validation.h"
+#include "lab/studies/variants.h"
 #include "lab/studies/variation.h"
 
 namespace hwsim::lab {
@@ -40,12 +42,28 @@ class Lab {
   /// The request with every value decided; its problems are appended, nothing is drawn.
   RunPlan plan(const Request& request, std::vector<Diagnostic>& problems);
 
+  /// The same for GPUs that are chosen one by one: the request's overlays and gpu.* settings are laid over
+  /// each of them, and its own list of GPUs is not looked at.
+  RunPlan plan(const Request& request, const std::vector<GpuChoice>& gpus, std::vector<Diagnostic>& problems);
+
+  /// The GPU with all that is laid over it.
+  GpuConfig gpu(const GpuChoice& choice);
+
   /// What the same plan took the last time; none when it is new.
   std::optional<double> expected_seconds(const RunPlan& plan) const;
 
   /// Each technique on each GPU. `sink` is given every point with its images while it comes.
   Run run(const Request& request, RunSink* sink = nullptr);
   Run run(const RunPlan& plan, RunSink* sink = nullptr);
+
+  /// Draws one technique for one GPU; time(), explain() and gradient() of studies/kept_frame.h take the frame
+  /// then. Throws InputError U004 unless there is one of each.
+  KeptFrame emulate(const RunPlan& plan);
+  /// The same frame where its work is that GPU's work, else one that is drawn for the GPU's features.
+  KeptFrame frame_for(const KeptFrame& frame, const GpuConfig& gpu);
+  /// The frame on each variant of a GPU, each a list of gpu.* settings, in the lab's threads.
+  std::vector<VariantTime> time_variants(const KeptFrame& frame, const GpuChoice& gpu,
+                                         const PointSettings& each);
 
   /// The request against each variation of it, each technique and each GPU; there must be two results at
   /// least.

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the packages of Debian 12 that the build needs and that are missing. Does nothing when all are there.
-# --checks: also what the gate's checks need (clang, its sanitizers, clang-format).
+# --python: also what HWSIM_PYTHON and its tests need.
+# --checks: also what the gate's checks need: that, clang, its sanitizers, clang-format.
 set -euo pipefail
 
 packages=(
@@ -10,7 +11,15 @@ packages=(
   libbenchmark-dev libgtest-dev
   libegl-dev libgl-dev libopengl-dev libegl-mesa0 libgl1-mesa-dri # llvmpipe: the rasterizer's oracle
 )
-[ "${1:-}" = --checks ] && packages+=(clang libclang-rt-14-dev clang-format)
+python=(
+  pybind11-dev python3-dev python3-numpy            # the package
+  python3-pandas python3-tqdm                       # what it imports when it is asked to
+  python3-pytest mypy python3-nbclient python3-nbformat python3-ipykernel # its tests
+)
+case "${1:-}" in
+--python) packages+=("${python[@]}") ;;
+--checks) packages+=(clang libclang-rt-14-dev clang-format "${python[@]}") ;;
+esac
 
 installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 

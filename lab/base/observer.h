@@ -22,7 +22,8 @@ class Observer {
   /// A note, a warning or an error.
   virtual void report(const Diagnostic& diagnostic) { (void)diagnostic; }
 
-  /// The share of the work that is done, 0 to 1, and what is being done. May come from any thread.
+  /// The share of the work that is done, 0 to 1, and what is being done. May come from any thread. An
+  /// exception ends the work, and comes out of the lab's function; the lab can be asked again.
   virtual void progress(double done_ratio, const std::string& what) {
     (void)done_ratio;
     (void)what;

@@ -18,15 +18,28 @@ std::string gpu_file(const std::string& name, const ConfigFolder& folder) {
 
 }  // namespace
 
-GpuConfig ConfigFiles::gpu(const std::string& name, const std::vector<std::string>& overlays,
-                           std::span<const Assignment> sets, bool calibrated) {
+const GpuFiles& ConfigFiles::kept(const std::string& name, const std::vector<std::string>& overlays,
+                                  bool calibrated) {
   const GpuKey key{name, overlays, calibrated};
   auto known = gpus_.find(key);
   if (known == gpus_.end())
     known =
         gpus_.emplace(key, GpuFiles(calibrated ? gpu_file(name, folder_) : name, overlays, folder_.gpus()))
             .first;
-  return known->second.with(sets);
+  return known->second;
+}
+
+GpuConfig ConfigFiles::gpu(const std::string& name, const std::vector<std::string>& overlays,
+                           std::span<const Assignment> sets, bool calibrated) {
+  return kept(name, overlays, calibrated).with(sets);
+}
+
+GpuConfig ConfigFiles::gpu(const GpuChoice& choice) { return gpu_files(choice).with(choice.sets); }
+
+GpuFiles ConfigFiles::gpu_files(const GpuChoice& choice) {
+  std::vector<std::string> files;
+  for (const std::string& overlay : choice.overlays) files.push_back(folder_.overlay_file(overlay));
+  return kept(choice.name, files, choice.calibrated);
 }
 
 std::shared_ptr<const cost_models::Calibration> ConfigFiles::calibration() {

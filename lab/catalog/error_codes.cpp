@@ -57,6 +57,10 @@ constexpr ErrorCode kCodes[] = {
     {"U022", "bad budget",
      "--budget is a list of quantity<=number; quantities are aa_ms, frame_ms, extra_mib, memory_mib, "
      "dram_mb."},
+    {"U040", "a frame of other features",
+     "A frame is timed on GPUs with the features and limits that it was drawn for (features.*, "
+     "functional.*): others "
+     "would do other work."},
     {"K001", "damaged file in the cache",
      "A file that hwsim keeps to save work is cut off, changed, or of another version. It is made anew: "
      "results "

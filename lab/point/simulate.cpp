@@ -25,8 +25,7 @@ std::vector<std::pair<std::string, double>> parts_by_unit(const FrameTiming& tim
   return parts;
 }
 
-/// Times the frame, with its interval where the calibration knows the GPU.
-void time_point(PointResult& point, const RunPlan& plan) {
+void time_work(PointResult& point, const RunPlan& plan) {
   const WorkTrace& trace = point.emulation->trace;
   const GpuConfig& gpu = *point.gpu;
   const auto* calibration = plan.engine == Engine::queue ? plan.calibration.get() : nullptr;
@@ -56,13 +55,17 @@ PointResult Simulator::run(const algos::TechniqueChoice& technique, const GpuCon
   point.emulation = frame.emulation;
   point.from_cache = frame.from_cache;
   if (!frame.in_memory) check_counts(point.emulation->trace);
-  const auto start = std::chrono::steady_clock::now();
   time_point(point, plan_);
-  point.timing_wall_s = seconds_since(start);
-  check_times(point.emulation->trace, point.timing, gpu);
   if (reference_)
     point.image_error = pipeline::compare(point.emulation->color, reference_->image, &point.flip_map);
   return point;
+}
+
+void time_point(PointResult& point, const RunPlan& plan) {
+  const auto start = std::chrono::steady_clock::now();
+  time_work(point, plan);
+  point.timing_wall_s = seconds_since(start);
+  check_times(point.emulation->trace, point.timing, *point.gpu);
 }
 
 void check_counts(const WorkTrace& trace) {

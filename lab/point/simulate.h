@@ -50,6 +50,10 @@ class Simulator {
   TraceStore& store_;
 };
 
+/// Times the point's work on its GPU as the plan says, with the interval where the calibration knows the GPU.
+/// Throws InternalError when an invariant is violated. In any thread.
+void time_point(PointResult& point, const RunPlan& plan);
+
 /// The invariants of every run, once for each trace and for each timing; throw InternalError with all that
 /// are violated.
 void check_counts(const WorkTrace& trace);

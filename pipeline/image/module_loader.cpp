@@ -40,6 +40,7 @@ std::vector<std::string> image_module_paths() {
   }
   folders.emplace_back(HWSIM_MODULE_INSTALL_DIR);
   for (std::string& folder : folders) folder += std::string("/") + kModuleFile;
+  folders.emplace_back(kModuleFile);
   return folders;
 }
 
@@ -47,7 +48,8 @@ const HwsimImageModule& open_image_module(const std::vector<std::string>& paths)
   Diagnostic d{.code = "I001", .message = std::string("cannot open the image module ") + kModuleFile};
   for (const std::string& path : paths) {
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) {
+    const bool is_place = path.find('/') != std::string::npos;
+    if (is_place && !std::filesystem::exists(path, ignored)) {
       d.notes.push_back("not at " + path);
       continue;
     }

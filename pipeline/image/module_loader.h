@@ -8,7 +8,8 @@
 namespace hwsim::pipeline {
 
 /// Where the image module is looked for, in this order: $HWSIM_MODULE_DIR, ../lib and . from the program's
-/// folder, the folder where the project is installed.
+/// folder, the folder where the project is installed; last its name alone, which the system's loader looks
+/// for where the library or program that holds this code says (RUNPATH): a module of Python is no program.
 std::vector<std::string> image_module_paths();
 
 /// Opens the first of the paths that exists and is a module of this version. Throws InputError (I001) with
