@@ -115,7 +115,7 @@ void add_overlay_depth(FrameGraph& graph, const SssFrame& f) {
 
 /// The multisampled frame's samples on triangles that are sampled: drawn once more, where the depth is
 /// theirs.
-void add_marks(FrameGraph& graph, SssFrame& f) {
+void add_marks(FrameGraph& graph, SssFrame& f, const SssOptions& options, const SssNeeds& needs) {
   f.marks = graph.add_image(
       {"marks", Format::r8_unorm, graph.width(), graph.height(), graph.image(f.base.depth).samples});
   graph.add_clear("marks_clear", {f.marks});
@@ -124,9 +124,10 @@ void add_marks(FrameGraph& graph, SssFrame& f) {
   pass.color = {f.marks};
   pass.depth = f.base.depth;
   pass.depth_read_only = true;
-  auto uniforms = std::make_shared<SssUniforms>(f.uniforms);
-  uniforms->counted = false;
   add_sss_batches(pass, f, [&](DrawBatch& batch, SssVertex vertex) {
+    auto uniforms = std::make_shared<SssUniforms>(f.uniforms);
+    uniforms->counted = false;
+    uniforms->largest_px2 = largest_sampled_px2(options, needs, vertex);
     batch.geometry = &sss_marks_program(vertex);
     batch.geometry_uniforms = uniforms;
     batch.fragment = &sss_mark_program();
@@ -156,8 +157,13 @@ ForwardTarget make_base(FrameGraph& graph, bool coverage_map) {
 
 }  // namespace
 
+float largest_sampled_px2(const SssOptions& options, const SssNeeds& needs, SssVertex vertex) {
+  if (!needs.most_points || options.sparsest_per_px <= 0.0) return 1e30f;
+  return static_cast<float>(needs.most_points(vertex) / options.sparsest_per_px);
+}
+
 SssFrame start_sss_frame(FrameGraph& graph, const FrameRequest& request, const SssOptions& o,
-                         bool needs_marks) {
+                         const SssNeeds& needs) {
   SssFrame f;
   f.parts = prepare_frame(graph, request);
   if (o.shading == SssShading::phong) f.parts.lighting.model = ShadingModel::phong;
@@ -171,7 +177,7 @@ SssFrame start_sss_frame(FrameGraph& graph, const FrameRequest& request, const S
   add_overlay_depth(graph, f);
   f.uniforms = make_uniforms(graph, f.parts, o);
   f.over_others = o.rest == SssRest::others;
-  if (f.over_others || needs_marks) add_marks(graph, f);
+  if (f.over_others || needs.marks) add_marks(graph, f, o, needs);
   f.below = graph.add_image({"resolved", Format::rgba8_srgb, graph.width(), graph.height(), 1});
   graph.add_resolve("resolve", f.base.color, f.below);
   return f;

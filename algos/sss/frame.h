@@ -1,6 +1,7 @@
 #pragma once
 // What the variants of selective supersampling share: the multisampled frame, the triangles that may be
 // sampled, and the composite.
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -28,10 +29,19 @@ struct SssFrame {
   SssUniforms uniforms;
 };
 
+/// What a variant asks of the passes that all share.
+struct SssNeeds {
+  bool marks = false;  ///< whatever lies under the samples
+  /// Points that a triangle can have; none: no points.
+  std::function<int(SssVertex)> most_points = nullptr;
+};
+
+/// The area beyond which triangles are left to the frame.
+float largest_sampled_px2(const SssOptions& options, const SssNeeds& needs, SssVertex vertex);
+
 /// The multisampled frame. With critical triangles, what the further passes start from; without, the output.
-/// `needs_marks`: whatever lies under the samples.
 SssFrame start_sss_frame(pipeline::FrameGraph& graph, const FrameRequest& request, const SssOptions& options,
-                         bool needs_marks = false);
+                         const SssNeeds& needs);
 
 /// What passes that sample read: the frame's depth, and the shadow map.
 std::vector<pipeline::ImageId> sss_slots(const SssFrame& frame);

@@ -20,6 +20,8 @@ void describe_sampling(OptionList& list, SssOptions& o) {
   list.real("rho", o.samples_per_px, {1, 256}, "points for a pixel of area");
   list.real("k_min", o.samples_min, {1, 64}, "points of a triangle, at least");
   list.real("k_max", o.samples_max, {1, 256}, "and at most");
+  list.real("rho_min", o.sparsest_per_px, {0, 256},
+            "points for a pixel below which a triangle is left to the frame: k_max is spread too thin");
   list.real("border_frac", o.border_share, {0, 1}, "share of them on the border");
   list.real("pt_bias_units", o.depth_bias_steps, {0, 65536},
             "samples come forward by this many steps of 24-bit depth");

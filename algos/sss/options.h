@@ -25,6 +25,7 @@ struct SssOptions {
   double samples_per_px = 16.0;
   double samples_min = 4.0;
   double samples_max = 256.0;
+  double sparsest_per_px = 8.0;  ///< points
   double border_share = 0.25;
   double depth_bias_steps = 2.0;  ///< steps of 24-bit depth
   double depth_slope = 0.1;

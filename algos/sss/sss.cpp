@@ -19,9 +19,27 @@ ImageId resolved_sum(FrameGraph& graph, ImageId sum) {
   return mean;
 }
 
+int most_points(const SssOptions& options) {
+  return std::max(1, static_cast<int>(std::max(options.samples_max, options.samples_min)));
+}
+
+bool from_tessellator(const FrameRequest& request, const SssPointOptions& options) {
+  return options.points == SssPointSource::tessellator ||
+         (options.points == SssPointSource::automatic && request.features.tessellator_points);
+}
+
+/// The same of a geometry shader, which emits so many scalars at most.
+int most_emitted(const FrameRequest& request, const SssPointOptions& options, SssVertex vertex) {
+  const int most = most_points(options.sss);
+  if (from_tessellator(request, options)) return most;
+  const int scalars = 4 + sss_point_shading_program(vertex, options.depth, false).varying_scalars;
+  return std::max(1, std::min(most, request.functional.gs_max_scalars / scalars));
+}
+
 FrameGraph build_points(const FrameRequest& request, const SssPointOptions& options) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
-  SssFrame f = start_sss_frame(graph, request, options.sss);
+  const SssNeeds needs{.most_points = [&](SssVertex v) { return most_emitted(request, options, v); }};
+  SssFrame f = start_sss_frame(graph, request, options.sss, needs);
   if (f.critical.empty()) return graph;
   const bool fixed = options.depth == SssPointDepth::fixed;
   const int samples = fixed ? kSssBaseSamples : 1;
@@ -36,18 +54,14 @@ FrameGraph build_points(const FrameRequest& request, const SssPointOptions& opti
     pass.depth_read_only = true;
     f.uniforms.depth_slope += 1.0f;  // a point is flat, half a pixel both ways
   }
-  const bool tessellated =
-      options.points == SssPointSource::tessellator ||
-      (options.points == SssPointSource::automatic && request.features.tessellator_points);
+  const bool tessellated = from_tessellator(request, options);
   add_sss_batches(pass, f, [&](DrawBatch& batch, SssVertex vertex) {
     batch.fragment = &sss_point_shading_program(vertex, options.depth, f.uniforms.lighting.extended);
-    const int scalars = 4 + batch.fragment->varying_scalars;
-    const int limit =
-        tessellated ? static_cast<int>(f.uniforms.samples_max) : request.functional.gs_max_scalars / scalars;
-    const int most = std::max(1, std::min(static_cast<int>(f.uniforms.samples_max), limit));
+    const int most = most_emitted(request, options, vertex);
     batch.tessellated_points = tessellated;
     auto uniforms = std::make_shared<SssUniforms>(f.uniforms);
     uniforms->samples_max = static_cast<float>(most);
+    uniforms->largest_px2 = largest_sampled_px2(options.sss, needs, vertex);
     batch.geometry = &sss_points_program(vertex, options.depth, most);
     batch.geometry_uniforms = uniforms;
     batch.fragment_uniforms = uniforms;
@@ -72,8 +86,10 @@ void add_fill(FrameGraph& graph, const std::string& name, std::vector<BufferId> 
 
 FrameGraph build_compute(const FrameRequest& request, const SssComputeOptions& options) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
-  SssFrame f = start_sss_frame(graph, request, options.sss);
+  const SssNeeds needs{.most_points = [&](SssVertex) { return most_points(options.sss); }};
+  SssFrame f = start_sss_frame(graph, request, options.sss, needs);
   if (f.critical.empty()) return graph;
+  f.uniforms.largest_px2 = largest_sampled_px2(options.sss, needs, SssVertex::plain);
   const bool floats = options.atomics == SssAtomics::floats ||
                       (options.atomics == SssAtomics::automatic && request.features.float_atomics);
   f.uniforms.radiance_max = static_cast<float>(options.radiance_max);
@@ -127,7 +143,7 @@ int grid_of(SssGrid grid) {
 FrameGraph build_lists(const FrameRequest& request, const SssListOptions& options) {
   FrameGraph graph(request.scene, request.width_px, request.height_px);
   const int node_words = options.node_bytes / 4;
-  SssFrame f = start_sss_frame(graph, request, options.sss, node_words == kSssPlaceNodeWords);
+  SssFrame f = start_sss_frame(graph, request, options.sss, {.marks = node_words == kSssPlaceNodeWords});
   if (f.critical.empty()) return graph;
   const std::uint64_t nodes = capacity(graph, options);
   SssUniforms& u = f.uniforms;

@@ -136,6 +136,7 @@ Fields<Struct> shared_sss() {
           FIELD("rho", o.sss.samples_per_px),
           FIELD("k_min", o.sss.samples_min),
           FIELD("k_max", o.sss.samples_max),
+          FIELD("rho_min", o.sss.sparsest_per_px),
           FIELD("border_frac", o.sss.border_share),
           FIELD("pt_bias_units", o.sss.depth_bias_steps),
           FIELD("pt_bias_slope", o.sss.depth_slope),

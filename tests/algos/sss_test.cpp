@@ -261,7 +261,7 @@ TEST(Sss, TheFrameBelowIsCoverageSampledWhereTheGpuCan) {
 
 /// Draws triangles whose criticality only their highlights decide.
 std::uint64_t chosen(const std::shared_ptr<const Scene>& scene, const std::string& parameters) {
-  return counters(run(scene, "sss_cs:mode=or,tri_px=0,early_exit=off," +
+  return counters(run(scene, "sss_cs:mode=or,tri_px=0,early_exit=off,rho_min=0," +
                                  parameters))[algos::SssCounters::sss_processed_primitives];
 }
 
@@ -283,6 +283,36 @@ TEST(Sss, HighlightsAreAsThinOnLongTrianglesAsOnShortOnes) {
     EXPECT_EQ(share(1.1f), 1.0) << along;
     EXPECT_NEAR(share(0.87f), 2.0 / 3.0, 0.1) << along;  // 60 of 90 degrees lie beyond cos(30)
     EXPECT_NEAR(share(0.5f), 1.0 / 3.0, 0.1) << along;
+  }
+}
+
+// Points thinner than the frame's samples would replace them by less: triangles of more than k_max / rho_min
+// pixels stay the frame's. Those of the cylinder whose triangles are thirty pixels long do.
+TEST(Sss, TrianglesTooLargeForTheirPointsAreLeftToTheFrame) {
+  for (const int along : {90, 3}) {
+    Mesh mesh;
+    add_cylinder(mesh, 0.0f, 0.3f, 24, along);
+    const auto scene = finish(empty_scene(), std::move(mesh));
+    const auto sampled = [&](const std::string& technique) {
+      return counters(run(scene, technique))[algos::SssCounters::sss_processed_primitives];
+    };
+    const std::string all = ":tri_px=100,early_exit=off,k_max=32,rho_min=";
+    for (const std::string variant : {"sss_gs", "sss_cs"}) {
+      EXPECT_GT(sampled(variant + all + "0"), 0u) << variant << along;
+      if (along == 90)
+        EXPECT_EQ(sampled(variant + all + "8"), sampled(variant + all + "0")) << variant;
+      else
+        EXPECT_LT(sampled(variant + all + "8"), sampled(variant + all + "0")) << variant;
+    }
+    EXPECT_EQ(sampled("sss_ppll:tri_px=100,early_exit=off,rho_min=256"),
+              sampled("sss_ppll:tri_px=100,early_exit=off,rho_min=0"));
+    // What is left out shows the frame's own samples, marks or none.
+    const std::string none = "sss_cs:tri_px=100,early_exit=off,k_min=1,k_max=1,rho_min=256";
+    if (along == 3) {
+      EXPECT_EQ(sampled(none), 0u);
+      EXPECT_EQ(largest_difference(run(scene, none + ",base=msaa8x").color, run(scene, "msaa8x").color),
+                0.0f);
+    }
   }
 }
 

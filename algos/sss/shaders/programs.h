@@ -67,6 +67,7 @@ struct SssUniforms {
 
   // How many samples, and where (docs/techniques/sss.md#points)
   float samples_per_px = 16.0f, samples_min = 4.0f, samples_max = 64.0f, border_share = 0.25f;
+  float largest_px2 = 1e30f;  ///< a triangle on which points would lie too thinly
   float depth_bias = 0.0f, depth_slope = 1.0f;
   // The depth image's eight samples, four bits each from the lowest: the one nearest to each of 4x4 cells of
   // the pixel, row by row, and where they lie, in 1/16 px from the pixel's corner.

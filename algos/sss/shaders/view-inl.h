@@ -178,7 +178,8 @@ typename S::M is_critical(S& s, const SssUniforms& u, const SssTriangle<F>& t, c
     above = above & (c[i].clip.y > c[i].clip.w);
     far = far & (c[i].clip.z > c[i].clip.w);
   }
-  const auto seen = in_front & !(left | right | below | above | far) & (t.area > F(0.0f));
+  const auto seen =
+      in_front & !(left | right | below | above | far) & (t.area > F(0.0f)) & !(t.area > F(u.largest_px2));
   const auto small_triangle = sqrt(t.area) < F(u.triangle_px),
              small_highlight = t.highlight_px < F(u.highlight_px);
   const auto small =
