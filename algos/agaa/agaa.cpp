@@ -157,28 +157,17 @@ class Builder {
     u->separation = static_cast<float>(o_.separation);
     u->unit_mean_normal = o_.mean_normal == AgaaMeanNormal::unit;
     u->seeds = o_.seeds;
-    // A layer's planes are its own: layers that stand for one pixel would have to be matched.
-    if (layers_ > 1 && o_.plane_path == AgaaPlanePath::on) refuse_planes();
-    const bool wanted = o_.plane_path == AgaaPlanePath::on ||
+    const bool planes = o_.plane_path == AgaaPlanePath::on ||
                         (o_.plane_path == AgaaPlanePath::automatic && features_.compressed_depth_read);
-    const bool planes = layers_ == 1 && wanted;
     u->reads_planes = planes;
+    u->layers = layers_;
+    for (std::size_t l = 0; l < pattern_.viewports.size(); ++l)
+      u->layer_shift_px[l] = glm::vec2(pattern_.viewports[l].x, pattern_.viewports[l].y) / 256.0f;
     u->empty_exit = o_.empty_exit;
     Pass& pass = add_frame_compute(graph_, "define", agaa_define_program(), std::move(u));
     pass.sampled = {depth_, normal_};
     pass.targets = {codes_};
     if (planes) pass.depth_planes = depth_;
-  }
-
-  [[noreturn]] void refuse_planes() const {
-    Diagnostic error;
-    error.code = "T003";
-    error.message = "plane_path = on with msaa = " + std::to_string(o_.samples) + " in " +
-                    std::to_string(layers_) + " layers, must be auto or off";
-    error.help =
-        "each layer's depth has planes of its own; a GPU with as many native samples "
-        "(`--overlay native-msaa-32x`) has one set of them";
-    throw InputError(std::move(error), ExitStatus::usage);
   }
 
   AggregateUniforms aggregate_uniforms(const AggregateTargets& targets) const {

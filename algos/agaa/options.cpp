@@ -61,7 +61,7 @@ void describe(OptionList& list, AgaaOptions& o) {
               "aggregates add up by blending into mixed samples, or by atomics");
   describe_centroid(list, o.centroid);
   list.choice("plane_path", o.plane_path, "auto|on|off",
-              "native samples: depth tiles that are compressed to few planes take those for aggregates");
+              "depth tiles that are compressed to few planes take those for aggregates");
   list.choice("empty_exit", o.empty_exit, "off|on",
               "whether the definition leaves pixels of sky alone at once");
   list.choice("a2c_dither", o.alpha_dither, "off|on", "alpha to coverage rounds by 2x2 pixels");

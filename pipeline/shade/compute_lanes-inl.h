@@ -129,11 +129,12 @@ class ComputeLanes : public LaneFlow {
     }
   }
 
-  /// The tile of the wave's pixels, 8x8, as compressed (Pass::depth_planes). Charged once a wave: the planes,
-  /// and the number of its plane for each sample, in pieces of 32 bytes (docs/compression.md#depth).
-  int tile_plane_count() {
+  /// A layer's tile of the wave's pixels, 8x8, as compressed (Pass::depth_planes). Charged once a wave: the
+  /// planes, and the number of its plane for each sample, in pieces of 32 bytes (docs/compression.md#depth).
+  /// Planes are numbered through the layers, kMaxDepthPlanes each.
+  int tile_plane_count(int layer = 0) {
     const DepthPlaneView& view = *group_.resources->depth_planes;
-    const int count = view.plane_count[static_cast<std::size_t>(tile())];
+    const int count = view.plane_count[static_cast<std::size_t>(tile(layer))];
     if (first_ != 0) return count;
     const int bits = count <= 1 ? 0 : count == 2 ? 1 : 2;
     const int bytes = 12 * (1 << bits) + 8 * view.image->samples * bits;
@@ -142,7 +143,7 @@ class ComputeLanes : public LaneFlow {
     for (std::uint64_t i = 0; i < 2 * pieces; ++i) texels.add(1, 16);
     charge_texels(texels, *group_.counters);
     group_.counters->mem.texture_read_bytes += 32 * pieces;
-    track_tile(pieces);
+    track_tile(layer, pieces);
     return count;
   }
   /// Depth of a plane at (x, y), pixels from the image's corner.
@@ -156,10 +157,19 @@ class ComputeLanes : public LaneFlow {
     const DepthPlane& p = tile_plane(plane);
     return p.z.base >= 1.0f && p.z.ddx == 0.0f && p.z.ddy == 0.0f;
   }
-  /// Pixels whose sample lies on the plane.
+  /// Whether `b` is `a` moved by so many pixels: one triangle's in two viewports, whose planes are set up
+  /// once (raster/triangle.h).
+  bool is_moved_tile_plane(int a, int b, glm::vec2 by_px) const {
+    DepthPlane moved = tile_plane(a);
+    moved.reference_x += by_px.x;
+    moved.reference_y += by_px.y;
+    return moved.same_plane(tile_plane(b));
+  }
+  /// Pixels whose sample, of the plane's layer, lies on the plane.
   M in_tile_plane(int plane, int sample) const {
     GpuImage& image = const_cast<GpuImage&>(*group_.resources->depth_planes->image);
-    return mask_from_bits(image.tile_plane_lanes(tile())[plane * image.samples + sample], first_);
+    const std::uint64_t* lanes = image.tile_plane_lanes(tile(plane / kMaxDepthPlanes));
+    return mask_from_bits(lanes[plane % kMaxDepthPlanes * image.samples + sample], first_);
   }
 
   /// Writes texel (x, y) of the pass's target, lanes of `mask` only; coordinates are inside the image.
@@ -191,23 +201,24 @@ class ComputeLanes : public LaneFlow {
     group_.counters->mem.texture_read_bytes += 4 * lanes * info(image.format).bytes;
     return load_texel_quad(*group_.resources, {slot, channel, mask_bits(live_), first_}, x, y);
   }
-  int tile() const {
+  int tile(int layer) const {
     HWY_ALIGN std::int32_t x[kVectorLanes], y[kVectorLanes];
     store(x_, x);
     store(y_, y);
-    return group_.resources->depth_planes->image->block_index(x[0], y[0]);
+    return group_.resources->depth_planes->image->block_index(x[0], y[0], layer);
   }
   const DepthPlane& tile_plane(int plane) const {
     const GpuImage& image = *group_.resources->depth_planes->image;
-    return image.planes[static_cast<std::size_t>(tile() * kMaxDepthPlanes + plane)];
+    const int in_tile = plane % kMaxDepthPlanes, layer = plane / kMaxDepthPlanes;
+    return image.planes[static_cast<std::size_t>(tile(layer) * kMaxDepthPlanes + in_tile)];
   }
   /// Where the tile's samples would lie: compression moves fewer bytes and leaves them at their address.
-  void track_tile(std::uint64_t pieces) {
+  void track_tile(int layer, std::uint64_t pieces) {
     for (std::size_t slot = 0; slot < group_.resources->images.size(); ++slot) {
       if (group_.resources->images[slot] != group_.resources->depth_planes->image) continue;
       const GpuImage& image = *group_.resources->images[slot];
       const auto first = group_.resources->image_first_line[slot] +
-                         static_cast<std::uint32_t>(tile() * image.samples * info(image.format).bytes);
+                         static_cast<std::uint32_t>(tile(layer) * image.samples * info(image.format).bytes);
       for (std::uint32_t i = 0; 2 * i < pieces; ++i)
         group_.resources->tracker->use_if_sampled(0, ReuseStream::texture, first + i, 64, 0);
     }

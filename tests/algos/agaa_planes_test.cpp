@@ -97,17 +97,34 @@ TEST(AgaaPlanes, TilesOfMorePlanesTakeTheSamples) {
   EXPECT_LT(largest_difference(b.samples.color, b.planes.color), 0.2f);
 }
 
-// Layers of a multicast pass have planes of their own each: their pixels go by samples.
-TEST(AgaaPlanes, LayersGoBySamples) {
-  GpuFeatures features = test_features();
-  features.compressed_depth_read = true;
-  const auto scene = share(patches({{-5, 5, 0}}));
-  EXPECT_EQ(total(render({scene, "agaa:msaa=32", features}).trace)
-                .technique[algos::AgaaCounters::agaa_plane_path_pixels],
-            0u);
-  // Asked for, they are refused, not left out.
-  EXPECT_THROW(render({scene, "agaa:msaa=32,plane_path=on", features}), InputError);
-  EXPECT_NO_THROW(render({scene, "agaa:msaa=8,plane_path=on", features}));
+// A triangle's plane is one in all layers of a multicast pass: they read what native samples would.
+TEST(AgaaPlanes, LayersHaveTheirPlanesInCommon) {
+  GpuFeatures layered = test_features();
+  layered.compressed_depth_read = true;
+  const auto one = share(patches({{-5, 5, 0, {0.7f, 0.4f, 0.2f}, 0.3f}}));
+  const auto two =
+      share(patches({{-5, 0.013f, 0, {0.9f, 0.05f, 0.05f}}, {-5, 5, -0.9f, {0.05f, 0.05f, 0.9f}}}));
+  for (const char* msaa : {"msaa=16", "msaa=32"})
+    for (const auto& scene : {one, two}) {
+      const std::string technique = std::string("agaa:c=2,k=1,plane_path=on,") + msaa;
+      const pipeline::Emulation layers = render({scene, technique, layered}),
+                                samples = render({scene, std::string("agaa:c=2,k=1,plane_path=off,") + msaa});
+      const PassCounters by_planes = total(layers.trace), by_samples = total(samples.trace);
+      EXPECT_GT(by_planes.technique[algos::AgaaCounters::agaa_plane_path_pixels],
+                static_cast<std::uint64_t>(kWidth * kHeight * 9 / 10))
+          << msaa;
+      EXPECT_EQ(by_planes.technique[algos::AgaaCounters::agaa_aggregates],
+                by_samples.technique[algos::AgaaCounters::agaa_aggregates])
+          << msaa;
+      EXPECT_LE(largest_difference(layers.color, samples.color), 1.5f / 255.0f) << msaa;
+    }
+  // Beside native samples at the positions of the layers: as near as without planes, whose records are
+  // rounded in each layer.
+  const auto apart = [&](const char* technique) {
+    return largest_difference(render({two, technique, plane_features()}).color,
+                              render({two, technique, layered}).color);
+  };
+  EXPECT_LE(apart("agaa:c=2,k=1,msaa=32"), apart("agaa:c=2,k=1,msaa=32,plane_path=off"));
 }
 
 }  // namespace

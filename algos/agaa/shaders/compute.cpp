@@ -1,4 +1,4 @@
-// The compute passes of AGAA: definition of the aggregates (Algorithm 1), and the merge of layers.
+// Definition of the aggregates (the paper's Algorithm 1).
 #include "algos/agaa/shaders/programs.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -22,7 +22,7 @@ enum DefineBlock : int {
   kNearestBlock = 8,    // a sample against a seed
   kStoreBlock = 9,      // a word of codes
   kSamplesBlock = 10,   // a pixel whose samples are clustered one by one
-  kTileBlock = 11,      // the planes of a tile
+  kTileBlock = 11,      // the planes of a layer's tile
   kPlaneBlock = 12,     // a pixel against one of them
   kOnPlaneBlock = 13,   // a sample against a plane
   kCodeBlock = 14       // the code of a sample on a plane
@@ -50,10 +50,12 @@ class Clusters {
   Clusters(S& s, const DefineUniforms& u) : s_(s), u_(u) {}
 
   void run() {
-    int planes = 0;
-    s_.uniform_branch(kTileBlock, u_.reads_planes, [&]() HWY_ATTR { planes = find_planes(); });
-    if (planes > 0) cluster_planes(planes);
-    s_.uniform_branch(kSamplesBlock, planes == 0, [&]() HWY_ATTR { cluster_samples(); });
+    // Not held as planes, or as more than aggregates (docs/techniques/agaa.md#depth-planes): by samples.
+    bool by_planes = kCounting<S> || u_.reads_planes;
+    s_.loop(kTileBlock, u_.reads_planes ? u_.layers : 0, s_.valid(),
+            [&](int layer) HWY_ATTR { by_planes = by_planes && find_planes(layer); });
+    if (by_planes) cluster_planes();
+    s_.uniform_branch(kSamplesBlock, !by_planes, [&]() HWY_ATTR { cluster_samples(); });
     store_codes();
   }
 
@@ -66,25 +68,56 @@ class Clusters {
     if constexpr (!kCounting<S>) count_plane_splits();
   }
 
-  /// The planes of the wave's tile that are no background; 0: more than aggregates, or the tile is not held
-  /// as planes (docs/techniques/agaa.md#depth-planes).
-  int find_planes() {
-    int count = 0;
-    const int all = s_.tile_plane_count();
-    for (int p = 0; p < all; ++p) {
-      if (s_.tile_plane_is_far(p)) continue;
-      if (count == u_.aggregates) return 0;
-      plane_[static_cast<std::size_t>(count++)] = p;
+  /// Adds the planes of a layer's tile that are no background; whether all so far are at most as many as
+  /// aggregates. A triangle's plane is the same in all layers, but for the shifts of their viewports.
+  bool find_planes(int layer) {
+    int all = 0;
+    if constexpr (kCounting<S>)
+      all = s_.tile_plane_count();
+    else
+      all = s_.tile_plane_count(layer);
+    const int first = layer * pipeline::kMaxDepthPlanes;
+    for (int plane = first; plane < first + all; ++plane) {
+      if (s_.tile_plane_is_far(plane)) continue;
+      const int found = find_plane(plane, layer);
+      if (found == u_.aggregates) return false;
+      const auto index = static_cast<std::size_t>(found);
+      if (found == planes_) {
+        plane_[index] = plane;
+        in_layer_[index].fill(-1);
+        ++planes_;
+      }
+      in_layer_[index][static_cast<std::size_t>(layer)] = plane;
     }
-    return all > 0 && count == 0 ? kOnlyBackground : count;
+    return all > 0;
+  }
+
+  /// Which of the planes so far it is, their number if none: a wave's work, not its lanes'.
+  int find_plane(int plane, int layer) {
+    if constexpr (!kCounting<S>)
+      for (int a = 0; a < planes_ && layer > 0; ++a) {
+        const int known = plane_[static_cast<std::size_t>(a)];
+        if (s_.is_moved_tile_plane(known, plane, shift(layer) - shift(known / pipeline::kMaxDepthPlanes)))
+          return a;
+      }
+    return planes_;
+  }
+
+  glm::vec2 shift(int layer) const { return u_.layer_shift_px[static_cast<std::size_t>(layer)]; }
+
+  /// Pixels whose sample, of all layers' together, lies on the plane of an aggregate.
+  M on_plane(std::size_t aggregate, int sample) {
+    const int of_layer = u_.samples / u_.layers;
+    const int plane = in_layer_[aggregate][static_cast<std::size_t>(sample / of_layer)];
+    return plane < 0 ? F(1.0f) < F(0.0f) : s_.in_tile_plane(plane, sample % of_layer);
   }
 
   /// A plane where its samples lie in the pixel: their mean place, and the plane's normal in view space.
-  SurfaceSample<F> place_on_plane(int plane, F& held) {
+  SurfaceSample<F> place_on_plane(std::size_t aggregate, F& held) {
     F count(0.0f), dx(0.0f), dy(0.0f);
     s_.loop(kOnPlaneBlock, u_.samples, s_.valid(), [&](int i) HWY_ATTR {
       const pipeline::SamplePosition p = u_.positions[static_cast<std::size_t>(i)];
-      const F one = select(s_.in_tile_plane(plane, i), F(1.0f), F(0.0f));
+      const F one = select(on_plane(aggregate, i), F(1.0f), F(0.0f));
       count = count + one;
       dx = dx + one * F(static_cast<float>(p.x) * 0.0625f);
       dy = dy + one * F(static_cast<float>(p.y) * 0.0625f);
@@ -92,8 +125,11 @@ class Clusters {
     const F share = F(1.0f) / max(count, F(1.0f));
     const F x = to_float(s_.pixel_x()) + F(0.5f) + dx * share,
             y = to_float(s_.pixel_y()) + F(0.5f) + dy * share;
-    const auto at = [&](F px, F py)
-                        HWY_ATTR { return unproject(px, py, s_.tile_plane_depth(plane, px, py)); };
+    const int plane = plane_[aggregate];
+    const glm::vec2 moved = shift(plane / pipeline::kMaxDepthPlanes);
+    const auto at = [&](F px, F py) HWY_ATTR {
+      return unproject(px, py, s_.tile_plane_depth(plane, px + F(moved.x), py + F(moved.y)));
+    };
     SurfaceSample<F> place;
     place.position = at(x, y);
     const Vec3<F> across = at(x + F(1.0f), y) - place.position, down = at(x, y + F(1.0f)) - place.position;
@@ -105,17 +141,17 @@ class Clusters {
 
   // Aggregate i is plane i, unless it comes too near to another one: both paths then behave alike where
   // surfaces lie apart.
-  void cluster_planes(int planes) {
-    if (planes == kOnlyBackground) return;
+  void cluster_planes() {
+    if (planes_ == 0) return;  // background alone
     M covered = F(1.0f) < F(0.0f);
     inv_k2_ = F(u_.inv_k2);
     std::array<I, 4> code{};
-    const auto count = static_cast<std::size_t>(planes);
+    const auto count = static_cast<std::size_t>(planes_);
     I made(0);
-    s_.loop(kPlaneBlock, planes, s_.valid(), [&](int index) HWY_ATTR {
+    s_.loop(kPlaneBlock, planes_, s_.valid(), [&](int index) HWY_ATTR {
       const auto a = static_cast<std::size_t>(index);
       F held;
-      seed_[a] = place_on_plane(plane_[a], held);
+      seed_[a] = place_on_plane(a, held);
       M own = held > F(0.5f);
       covered = covered | own;
       code[a] = made;
@@ -132,7 +168,7 @@ class Clusters {
     const int bits = u_.code_bits;
     s_.loop(kCodeBlock, u_.samples, s_.valid(), [&](int i) HWY_ATTR {
       I of(0);
-      for (std::size_t a = 1; a < count; ++a) of = select(s_.in_tile_plane(plane_[a], i), code[a], of);
+      for (std::size_t a = 1; a < count; ++a) of = select(on_plane(a, i), code[a], of);
       const auto word = static_cast<std::size_t>(i / 8);
       words_[word] = words_[word] + of * I(1 << (i % 8 * bits));
     });
@@ -312,8 +348,9 @@ class Clusters {
   M running_;  ///< pixels whose samples are clustered
   F inv_k2_;
   std::array<I, 4> words_ = {I(0), I(0), I(0), I(0)};  ///< the codes
-  static constexpr int kOnlyBackground = 5;
-  std::array<int, 4> plane_{};  ///< number of each aggregate's plane in its tile
+  int planes_ = 0;
+  std::array<int, 4> plane_{};                    ///< one of each aggregate, in the first layer that has it
+  std::array<std::array<int, 4>, 4> in_layer_{};  ///< the same in each layer; -1: not there
 };
 
 struct DefineShader {
@@ -324,65 +361,7 @@ struct DefineShader {
   }
 };
 
-enum MergeBlock : int { kAggregateOfMergeBlock = 1, kLayerBlock = 2 };
-
-/// Records hold sums: every target's channels add up, but the mask bytes of the layers stand side by side.
-struct MergeLayersShader {
-  using Uniforms = MergeLayersUniforms;
-  template <class S>
-  static void run(S& s, const MergeLayersUniforms& u) {
-    using F = typename S::F;
-    using I = typename S::I;
-    const I x = s.pixel_x(), y = s.pixel_y();
-    s.loop(kAggregateOfMergeBlock, u.aggregates, s.valid(), [&](int a) HWY_ATTR {
-      std::array<Vec4<F>, pipeline::kMaxColorTargets> sum;
-      for (Vec4<F>& v : sum) v = {F(0.0f), F(0.0f), F(0.0f), F(0.0f)};
-      std::array<F, 4> mask = {F(0.0f), F(0.0f), F(0.0f), F(0.0f)};
-      I samples(0);
-      s.loop(kLayerBlock, u.layers, s.valid(), [&](int layer) HWY_ATTR {
-        const I plane(layer * u.color_samples + a);
-        const int shared[] = {u.from.shape, u.from.albedo,    u.from.chroma, u.from.shape_rest,
-                              u.from.luma,  u.from.geometric, u.from.moments};
-        for (const int t : shared) {
-          if (t < 0) continue;
-          const auto index = static_cast<std::size_t>(t);
-          const Vec4<F> texel = s.load_image(t, x, y, plane);
-          if (t == u.from.chroma) mask[static_cast<std::size_t>(layer)] = texel.w;
-          sum[index] = sum[index] + texel;
-        }
-        if (u.from.mask_word >= 0)
-          mask[static_cast<std::size_t>(layer)] = s.load_image(u.from.mask_word, x, y, plane).x;
-        if (u.to.counts_samples)
-          samples = samples + bit_count(byte_of<I>(mask[static_cast<std::size_t>(layer)]));
-      });
-      auto& chroma = sum[static_cast<std::size_t>(u.from.chroma)];
-      chroma.w = u.to.counts_samples   ? to_float(samples) * F(1.0f / 255.0f)
-                 : u.to.mask_word >= 0 ? F(0.0f)
-                                       : mask[0];
-      store(s, u, x, y, I(a), sum, mask);
-    });
-  }
-
-  template <class S, class F, class I>
-  static void store(S& s, const MergeLayersUniforms& u, I x, I y, I a,
-                    const std::array<Vec4<F>, pipeline::kMaxColorTargets>& sum,
-                    const std::array<F, 4>& mask) {
-    const F zero(0.0f);
-    // The same targets in the same places; what the layers' masks need besides follows.
-    for (const int t :
-         {u.to.shape, u.to.albedo, u.to.chroma, u.to.shape_rest, u.to.luma, u.to.geometric, u.to.moments})
-      if (t >= 0) s.store_image(t, x, y, a, sum[static_cast<std::size_t>(t)], s.valid());
-    if (u.to.mask_1 >= 0) s.store_image(u.to.mask_1, x, y, a, {mask[1], zero, zero, zero}, s.valid());
-    if (u.to.mask_2 >= 0) s.store_image(u.to.mask_2, x, y, a, {mask[2], mask[3], zero, zero}, s.valid());
-    if (u.to.mask_word >= 0)
-      s.store_image(u.to.mask_word, x, y, a, {mask[0], mask[1], mask[2], mask[3]}, s.valid());
-  }
-};
-
 void run_define(pipeline::GroupBatch& group, const void* u) { run_pixel_group<DefineShader>(group, u); }
-void run_merge_layers(pipeline::GroupBatch& group, const void* u) {
-  run_pixel_group<MergeLayersShader>(group, u);
-}
 
 }  // namespace hwsim::algos::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -390,23 +369,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace hwsim::algos {
 HWY_EXPORT(run_define);
-HWY_EXPORT(run_merge_layers);
 
 const pipeline::ComputeProgram& agaa_define_program() {
   static const pipeline::ComputeProgram program =
       HWY_NAMESPACE::describe_pixel_groups<HWY_NAMESPACE::DefineShader>(
           "agaa_define", [](pipeline::GroupBatch& g, const void* u) {
             HWY_DYNAMIC_DISPATCH(run_define)
-            (g, u);
-          });
-  return program;
-}
-
-const pipeline::ComputeProgram& agaa_merge_program() {
-  static const pipeline::ComputeProgram program =
-      HWY_NAMESPACE::describe_pixel_groups<HWY_NAMESPACE::MergeLayersShader>(
-          "agaa_merge", [](pipeline::GroupBatch& g, const void* u) {
-            HWY_DYNAMIC_DISPATCH(run_merge_layers)
             (g, u);
           });
   return program;

@@ -74,6 +74,8 @@ struct DefineUniforms {
   SeedRule seeds = SeedRule::farthest;
   bool empty_exit = false;    ///< pixels without a surface are left after their samples were read
   bool reads_planes = false;  ///< tiles that depth compression holds as few planes take those for aggregates
+  int layers = 1;             ///< layers of the depth image, with equal parts of the samples
+  std::array<glm::vec2, 4> layer_shift_px{};  ///< by how much a layer's viewport moves what it shows
 };
 /// Pass 2: image 0 depth, 1 normal codes; target 0 the codes, eight samples a layer.
 const pipeline::ComputeProgram& agaa_define_program();
