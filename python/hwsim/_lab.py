@@ -139,8 +139,8 @@ class Lab:
     """Answers questions, and keeps the scenes, traces and references that it has loaded.
 
     Methods work without the interpreter's lock, in ``jobs`` threads; those of several Python threads wait for each
-    other. Ctrl-C raises KeyboardInterrupt within a fraction of a second, and leaves nothing half done. Mistakes of a
-    question raise InputError before anything is drawn.
+    other. Ctrl-C raises KeyboardInterrupt at the next step of the work (a pass of a frame, a few points of a grid), and
+    leaves nothing half done. Mistakes of a question raise InputError before anything is drawn.
     """
 
     def __init__(

@@ -46,6 +46,7 @@ def test_each_wrong_word_is_told(lab, triangle):
     assert codes(lambda: lab.emulate(hwsim.View(str(triangle), lights="dim"))) == ("U003",)
     assert codes(lambda: lab.rank(triangle, ["none"], budget="beauty<=1")) == ("U022",)
     assert codes(lambda: lab.compare(triangle)) == ("U002",)
+    assert codes(lambda: lab.validate("no_such_paper")) == ("U003",)
 
 
 def test_a_value_of_no_type_is_a_type_error(lab):
