@@ -58,6 +58,23 @@ Experiment kept_experiment(const std::string& papers) {
                          source_of(kept_traces()), [](std::size_t, std::size_t, const std::string&) {});
 }
 
+struct Signs {
+  int pairs = 0, agree = 0;
+};
+
+/// Who of SBAA's Table 2 is faster than the reference of the same scene, samples and lights.
+Signs signs_of_table_2(const Experiment& experiment, const std::vector<HeldOutRatio>& ratios) {
+  Signs signs;
+  for (const HeldOutRatio& r : ratios) {
+    const PublishedRow &first = experiment.cells[r.first].row, &second = experiment.cells[r.second].row;
+    if (first.table != "sbaa_table2_frame_time_memory" || first.msaa != second.msaa) continue;
+    if (first.technique.starts_with("SBAA") == second.technique.starts_with("SBAA")) continue;
+    ++signs.pairs;
+    signs.agree += (r.predicted > 1.0) == (r.published > 1.0) ? 1 : 0;
+  }
+  return signs;
+}
+
 class Accuracy : public testing::TestWithParam<std::string> {};
 
 TEST_P(Accuracy, IsWhatThisVersionStates) {
@@ -82,6 +99,11 @@ TEST_P(Accuracy, IsWhatThisVersionStates) {
   }
   EXPECT_GT(checked, 0u);
   if (GetParam() == "all") {
+    // Two changes of GRASS at 8x contradict the text and are not fitted.
+    const Signs signs = signs_of_table_2(experiment, validation.splits.front().ratios);
+    EXPECT_EQ(signs.pairs, 46);
+    EXPECT_GE(signs.agree, 30) << "docs/differences.md says how many, and which are missing";
+    RecordProperty("table_2_signs", signs.agree);
     EXPECT_EQ(known.size(), validation.optima.size()) << "a fold has no known optimum";
   }
   EXPECT_TRUE(experiment.not_run.empty()) << experiment.not_run.front().reason;
