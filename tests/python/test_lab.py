@@ -5,6 +5,7 @@ import os
 import signal
 import sys
 import threading
+import time
 
 import pytest
 
@@ -115,26 +116,42 @@ def test_one_lab_answers_several_threads(lab, triangle):
     assert not errors and len(times) == 4 and len(set(times)) == 3
 
 
-def test_python_goes_on_while_a_lab_works(triangle):
-    lab = hwsim.Lab(cache="", jobs=1)
-    counted, working = [0], threading.Event()
+def counted_meanwhile(work):
+    """How often another thread got the interpreter's lock while ``work`` ran.
+
+    The thread does not get it but where the lock is given up: nobody is made to give it up within a minute.
+    """
+    count, working = [0], threading.Event()
     working.set()
 
-    def count():
+    def tick():
         while working.is_set():
-            counted[0] += 1
+            count[0] += 1
+            time.sleep(0.001)
 
-    switch = sys.getswitchinterval()
-    sys.setswitchinterval(1e-4)
-    thread = threading.Thread(target=count)
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(60)
+    thread = threading.Thread(target=tick)
     thread.start()
-    before = counted[0]
-    lab.emulate(triangle, "ssaa16x", resolution=(512, 512))
-    during = counted[0] - before
+    before = count[0]
+    work()
+    during = count[0] - before
     working.clear()
     thread.join()
-    sys.setswitchinterval(switch)
-    assert during > 100, "the interpreter's lock was held"
+    sys.setswitchinterval(interval)
+    return during
+
+
+def test_python_goes_on_while_a_lab_works(triangle):
+    lab = hwsim.Lab(cache="", jobs=1)
+    assert counted_meanwhile(lambda: lab.emulate(triangle, "ssaa16x", resolution=(512, 512))) > 5
+
+
+def test_python_goes_on_while_a_frame_is_timed(lab, triangle):
+    frame = lab.emulate(triangle, "msaa8x", resolution=(256, 256), engine="detailed")
+    gpu = lab.gpu("gtx980")
+    assert counted_meanwhile(lambda: [frame.time(gpu) for _ in range(3)]) > 5
+    assert counted_meanwhile(lambda: [frame._core.facts() for _ in range(100)]) <= 1, "it would count anyway"
 
 
 def test_ctrl_c_ends_the_work_and_the_lab_goes_on(triangle):
