@@ -48,7 +48,7 @@ struct PartedTime {
 template <class T>
 PartedTime<T> parted_time(const PassWork& pass, const PassShape& shape, const GpuRates<T>& rates,
                           bool waits) {
-  const PassTime<T> time = time_costs(chunk_costs(pass, shape, rates), rates, Engine::queue, waits);
+  const PassTime<T> time = time_whole(pass, chunk_costs(pass, shape, rates), rates, Engine::queue, waits);
   return {time.time_ns - time.overhead_ns, time.overhead_ns, pass.kind == PassKind::draw};
 }
 

@@ -77,7 +77,7 @@ std::vector<UnitHeadroom> headroom(const WorkTrace& trace, const GpuConfig& gpu,
         busy_ns += cost.ns[u];
         cost.ns[u] = 0.0;
       }
-      return time_costs(costs, rates, engine, waits).time_ns;
+      return time_whole(pass, costs, rates, engine, waits).time_ns;
     });
     if (busy_ns > 0.0) result.push_back(entry);
   }

@@ -114,10 +114,12 @@ PassTiming detailed_pass(const PassWork& pass, const GpuConfig& gpu, const GpuRa
   detailed.time.overhead_ns = overhead;
   detailed.time.time_ns += overhead;
   detailed.time.stack_ns[index_of(Unit::fe)] += overhead;
+  const Transition<double> transition = transition_before(pass, rates);
+  add_transition(transition, detailed.time);
   PassTiming timing = report(pass, detailed.time);
   if (detailed.interval_ns)
-    timing.sampling_interval_ns = {(*detailed.interval_ns)[0] + overhead,
-                                   (*detailed.interval_ns)[1] + overhead};
+    timing.sampling_interval_ns = {(*detailed.interval_ns)[0] + overhead + transition.ns,
+                                   (*detailed.interval_ns)[1] + overhead + transition.ns};
   return timing;
 }
 
@@ -126,7 +128,7 @@ PassTiming chunked_pass(const PassWork& pass, const GpuRates<double>& rates, Eng
   const PassShape shape = shape_of(pass);
   const std::vector<ChunkCost<double>> costs = chunk_costs(pass, shape, rates);
   PassSlopes by_costs;
-  const PassTime<double> time = time_costs(costs, rates, engine, waits, slopes ? &by_costs : nullptr);
+  const PassTime<double> time = time_whole(pass, costs, rates, engine, waits, slopes ? &by_costs : nullptr);
   if (slopes) slopes->add(pass, shape, costs, by_costs, waits);
   return report(pass, time);
 }

@@ -7,6 +7,7 @@
 #include "hwsim/timing/engine.h"
 #include "hwsim/timing/packet_flow.h"
 #include "hwsim/timing/service.h"
+#include "hwsim/timing/transition.h"
 
 namespace hwsim {
 
@@ -208,9 +209,18 @@ PassTime<T> time_costs(const std::vector<ChunkCost<T>>& costs, const GpuRates<T>
   return time;
 }
 
+/// The pass with all that comes before it.
+template <class T>
+PassTime<T> time_whole(const PassWork& pass, const std::vector<ChunkCost<T>>& costs, const GpuRates<T>& rates,
+                       Engine engine, bool waits, PassSlopes* slopes = nullptr) {
+  PassTime<T> time = time_costs(costs, rates, engine, waits, slopes);
+  add_transition(transition_before(pass, rates), time);
+  return time;
+}
+
 template <class T>
 PassTime<T> time_pass(const PassWork& pass, const GpuRates<T>& rates, Engine engine, bool waits) {
-  return time_costs(chunk_costs(pass, rates), rates, engine, waits);
+  return time_whole(pass, chunk_costs(pass, rates), rates, engine, waits);
 }
 
 /// A pass waits for everything before it where the graph says so; the first of a frame always does.

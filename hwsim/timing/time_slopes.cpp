@@ -141,6 +141,7 @@ void TimeSlopes::add(const PassWork& pass, const PassShape& shape,
       for (std::size_t k = 0; k < costs.size(); ++k) gradient.chunk(k, slopes, by);
     }
     if (waits) gradient.add(1.0, rates.pass_overhead_ns);
+    gradient.add(1.0, transition_before(pass, rates).ns);
     for (std::size_t i = 0; i < kWidth && block * kWidth + i < ns_.size(); ++i)
       ns_[block * kWidth + i] += gradient.sum().d[i];
   }

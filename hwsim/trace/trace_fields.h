@@ -19,6 +19,15 @@ void describe_fields(Visitor& v, Target& target) {
   v.field("kept", kept);
 }
 
+template <class Visitor, class Target>
+requires std::same_as<std::remove_const_t<Target>, ReadTargetWork>
+void describe_fields(Visitor& v, Target& target) {
+  auto& [format, samples, pixels] = target;
+  v.field("format", format);
+  v.field("samples", samples);
+  v.field("pixels", pixels);
+}
+
 template <class Visitor, class Curve>
 requires std::same_as<std::remove_const_t<Curve>, MissCurve>
 void describe_fields(Visitor& v, Curve& curve) {
@@ -47,7 +56,7 @@ requires std::same_as<std::remove_const_t<Pass>, PassWork>
 void describe_fields(Visitor& v, Pass& pass) {
   auto& [name, kind, width_px, height_px, raster_samples, sample_rate, barrier_before, depth_format,
          depth_samples, depth_cleared_before, depth_loaded, depth_kept, color_cleared_before, source_in_tile,
-         color_targets, group_memory_lane_bytes, attribute_scalars, reuse, chunks] = pass;
+         color_targets, read_targets, group_memory_lane_bytes, attribute_scalars, reuse, chunks] = pass;
   v.field("name", name);
   v.field("kind", kind);
   v.field("width_px", width_px);
@@ -63,6 +72,7 @@ void describe_fields(Visitor& v, Pass& pass) {
   v.field("color_cleared_before", color_cleared_before);
   v.field("source_in_tile", source_in_tile);
   v.field("color_targets", color_targets);
+  v.field("read_targets", read_targets);
   v.field("group_memory_lane_bytes", group_memory_lane_bytes);
   v.field("attribute_scalars", attribute_scalars);
   v.field("reuse", reuse);

@@ -23,6 +23,13 @@ struct ColorTargetWork {
   bool kept = true;     ///< a later pass, or the display, needs what this pass leaves: they store it
 };
 
+/// An image that shaders of a pass read, first since something was drawn on it.
+struct ReadTargetWork {
+  Format format = Format::none;
+  int samples = 1;
+  std::uint64_t pixels = 0;  ///< in all layers
+};
+
 /// One pass. `chunks` stand in the order in which the hardware meets them: batches of triangles in submission
 /// order for draws, bands of screen tiles for full-screen passes, bands of groups for compute.
 struct PassWork {
@@ -41,9 +48,10 @@ struct PassWork {
   bool color_cleared_before = false;  ///< its color targets were: likewise
   bool source_in_tile = false;        ///< a resolve of what the pass just before it drew
   std::vector<ColorTargetWork> color_targets;
-  int group_memory_lane_bytes = 0;  ///< group memory of a compute group, divided by its invocations
-  int attribute_scalars = 0;        ///< 32-bit values that the rasterizer interpolates for each fragment
-  ReuseProfile reuse;               ///< what caches of any size let through
+  std::vector<ReadTargetWork> read_targets;  ///< GPUs may have to decompress them first
+  int group_memory_lane_bytes = 0;           ///< group memory of a compute group, divided by its invocations
+  int attribute_scalars = 0;  ///< 32-bit values that the rasterizer interpolates for each fragment
+  ReuseProfile reuse;         ///< what caches of any size let through
   std::vector<PassCounters> chunks;
 };
 

@@ -72,6 +72,7 @@ struct ColorRop {
     bool msaa_color_compression = true;
     int msaa_color_block_bytes = 0;
     T color_delta_ratio{1.0};
+    bool shader_read_expands_color = false;
   };
 
   template <class V, class T>
@@ -124,6 +125,9 @@ struct ColorRop {
     v.key({"color_delta_ratio", kRatioLow, 1, kFit | kSlower,
            "bytes of single-sample color moved / uncompressed bytes"},
           c.color_delta_ratio);
+    v.key({"shader_read_expands_color", 0, 0, kSlower,
+           "multisampled color that was drawn is decompressed in place before a shader reads it"},
+          c.shader_read_expands_color);
   }
 
   template <class T>
@@ -134,7 +138,7 @@ struct ColorRop {
     std::array<T, kRateClassCount> color_sample_ns;  ///< multisample writes, the ROPs alone
     T crop_cache_bytes, clear_color_tile_bytes, color_delta_ratio;
     int msaa_color_block_bytes;
-    bool crop_compressible_at_pixel_rate, msaa_color_compression, fast_clear_color;
+    bool crop_compressible_at_pixel_rate, msaa_color_compression, fast_clear_color, shader_read_expands_color;
   };
 
   template <class Gpu, class T, class R>
@@ -155,6 +159,7 @@ struct ColorRop {
     r.msaa_color_block_bytes = c.msaa_color_block_bytes;
     r.crop_compressible_at_pixel_rate = c.crop_compressible_at_pixel_rate;
     r.msaa_color_compression = c.msaa_color_compression;
+    r.shader_read_expands_color = c.shader_read_expands_color;
     r.fast_clear_color = c.fast_clear_color;
   }
 

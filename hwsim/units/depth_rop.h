@@ -25,6 +25,7 @@ struct DepthRop {
     T fast_clear_depth_bytes_per_tile{4.0};
     int depth_plane_slots = 4;
     bool depth_offset_forms = false;
+    bool shader_read_expands_depth = false;
   };
 
   template <class V, class T>
@@ -45,13 +46,16 @@ struct DepthRop {
     v.key({"depth_offset_forms", 0, 0, kFaster,
            "depth tiles as 6- or 14-bit distances from their nearest or farthest value"},
           c.depth_offset_forms);
+    v.key({"shader_read_expands_depth", 0, 0, kSlower,
+           "depth that was drawn is decompressed in place before a shader reads it"},
+          c.shader_read_expands_depth);
   }
 
   template <class T>
   struct Rates {
     T zrop_sample_ns, zrop_cache_bytes, clear_depth_tile_bytes;
     int depth_plane_slots;
-    bool fast_clear_depth, depth_offset_forms;
+    bool fast_clear_depth, depth_offset_forms, shader_read_expands_depth;
   };
 
   template <class Gpu, class T, class R>
@@ -62,6 +66,7 @@ struct DepthRop {
     r.depth_plane_slots = c.depth_plane_slots;
     r.fast_clear_depth = c.fast_clear_depth;
     r.depth_offset_forms = c.depth_offset_forms;
+    r.shader_read_expands_depth = c.shader_read_expands_depth;
   }
 
   template <class T, class R>

@@ -33,8 +33,19 @@ T resident_subgroups(const PassCounters& c, const PassWork& pass, const R& r) {
                           c.stats.compute_shader_invocations);
   const auto registers = static_cast<double>(c.shader.register_lanes);
   if (lanes > 0.0 && registers > 0.0)
-    most = smaller(most, T(r.registers / (registers / lanes * r.subgroup_size)));
+    most = smaller(most,
+                   T(r.registers / (smaller(T(registers / lanes), r.registers_lane_max) * r.subgroup_size)));
   return larger(T(1.0), most);
+}
+
+/// Values that an invocation has no register for: each is stored and loaded again, once at least. The chunk's
+/// mean stands for its invocations.
+template <class R, class T = typename R::Scalar>
+T spilled_words(const PassCounters& c, const R& r) {
+  const auto lanes =
+      static_cast<double>(c.stats.fragment_shader_invocations + c.stats.geometry_shader_invocations +
+                          c.stats.compute_shader_invocations);
+  return 2.0 * larger(T(0.0), T(static_cast<double>(c.shader.register_lanes) - lanes * r.registers_lane_max));
 }
 
 /// Latency of a subgroup's memory request: it waits for the slowest of its lanes, so one line that misses is
@@ -87,14 +98,16 @@ template <class R, class T = typename R::Scalar>
 ShaderPipes<T> shader_pipes(const PassCounters& c, const R& r) {
   const IssuedOps issued = issued_ops(c.shader, r.subgroup_size);
   T alu = (static_cast<double>(c.vs.alu_lane_ops) + issued.alu) * r.alu_lane_op_ns;
-  if (r.vliw) {  // a special function takes a slot; words cannot be fuller than chains and t slots allow
-    alu += (static_cast<double>(c.vs.sfu_lane_ops) + issued.sfu) * r.alu_lane_op_ns;
+  if (r.vliw) {  // a special function takes slots; words cannot be fuller than chains and t slots allow
+    alu += (static_cast<double>(c.vs.sfu_lane_ops) + issued.sfu) * r.vliw_sfu_slots * r.alu_lane_op_ns;
     alu = larger(alu, T(static_cast<double>(c.shader.vliw5_issued_words_w64) * r.vliw_word_ns));
   }
   T sfu = (static_cast<double>(c.vs.sfu_lane_ops) + issued.sfu) * r.sfu_lane_op_ns;
   const T interp = static_cast<double>(c.shader.interp_lane_ops) * r.interp_scalar_ns;
   (r.interp_on_alu ? alu : sfu) += interp;
-  const T words = static_cast<double>(c.shader.load_lane_ops + c.shader.store_lane_ops) * r.memory_word_ns;
+  const T words =
+      (static_cast<double>(c.shader.load_lane_ops + c.shader.store_lane_ops) + spilled_words(c, r)) *
+      r.memory_word_ns;
   const T group = static_cast<double>(c.shader.group_memory_lane_ops) * r.group_memory_word_ns;
   const T atomics =
       larger(T(static_cast<double>(c.shader.atomic_lane_ops) * r.atomic_ns),
@@ -121,10 +134,12 @@ struct ShaderCores {
     int subgroup_size = 32;
     T vliw_slots{1.0};
     T vliw_fill_slots{1.0};
+    T vliw_sfu_slots{1.0};
     T alu_efficiency_ratio{1.0};
     T interp_scalars_per_core_clk{0.0};
     bool interp_on_alu = false;
     T registers_kib_per_core{256.0};
+    T registers_per_invocation_max{255.0};
     T group_memory_kib_per_core{32.0};
     T subgroups_per_core_max{48.0};
     T alu_latency_cycles{8.0};
@@ -151,6 +166,8 @@ struct ShaderCores {
     v.key({"vliw_slots", 1, 16, kSlower, "operations of an instruction word; 1 for scalar lanes"},
           c.vliw_slots);
     v.key({"vliw_fill_slots", 0.1, 16, kFit | kFaster, "of these, filled on average"}, c.vliw_fill_slots);
+    v.key({"vliw_sfu_slots", 1, 16, kSlower, "of a word's slots, those that a special function takes"},
+          c.vliw_sfu_slots);
     v.key({"alu_efficiency_ratio", kRatioLow, 1, kFit | kFaster, "issue slots that shaders can use"},
           c.alu_efficiency_ratio);
     v.key({"interp_scalars_per_core_clk", kRateLow, kRateHigh, kRequired | kFaster,
@@ -162,6 +179,9 @@ struct ShaderCores {
     v.key({"registers_kib_per_core", 1, kKibHigh, kFaster,
            "register file: with the shader's registers it bounds the resident subgroups"},
           c.registers_kib_per_core);
+    v.key({"registers_per_invocation_max", 8, 4096, kNeither,
+           "32-bit registers that instructions can name: values beyond them are stored and loaded"},
+          c.registers_per_invocation_max);
     v.key({"group_memory_kib_per_core", 1, kKibHigh, kFaster,
            "group memory: what compute groups reserve of it bounds the resident subgroups, too"},
           c.group_memory_kib_per_core);
@@ -189,7 +209,9 @@ struct ShaderCores {
     T shader_cores, subgroups_max, registers, group_memory_bytes, alu_latency_ns;
     T alu_lane_op_ns, sfu_lane_op_ns, interp_scalar_ns, memory_word_ns, group_memory_word_ns;
     T atomic_ns, same_address_atomic_ns;
-    T vliw_word_ns;  ///< zero where words are not of five slots: then the average fill alone says it
+    T vliw_word_ns;  ///< zero where words have neither five slots nor four: then the average fill alone says
+                     ///< it
+    T vliw_sfu_slots, registers_lane_max;
     int subgroup_size;
     bool vliw;  ///< special functions take a slot of the words
     bool interp_on_alu;
@@ -198,12 +220,15 @@ struct ShaderCores {
   template <class Gpu, class T, class R>
   static void derive(const Gpu& c, const T& clk_ns, R& r) {
     const T lanes = c.shader_cores * c.fp32_lanes_per_core * c.vliw_fill_slots / c.vliw_slots;
-    constexpr double kCountedVliwSlots = 5.0, kRegisterBytes = 4.0;
+    // Words are counted with five slots; in as many with four no more fits.
+    constexpr double kCountedVliwSlots = 5.0, kFewestCountedSlots = 4.0, kRegisterBytes = 4.0;
     r.vliw = c.vliw_slots > T(1.0);
     r.vliw_word_ns = T(0.0);
-    if (!(c.vliw_slots < T(kCountedVliwSlots)) && !(T(kCountedVliwSlots) < c.vliw_slots))
+    if (!(c.vliw_slots < T(kFewestCountedSlots)) && !(T(kCountedVliwSlots) < c.vliw_slots))
       r.vliw_word_ns =
           r.shader_clk_ns * c.vliw_slots / (c.shader_cores * c.fp32_lanes_per_core * c.alu_efficiency_ratio);
+    r.vliw_sfu_slots = c.vliw_sfu_slots;
+    r.registers_lane_max = c.registers_per_invocation_max;
     r.shader_cores = c.shader_cores;
     r.subgroups_max = c.subgroups_per_core_max;
     r.group_memory_bytes = c.group_memory_kib_per_core * kBytesPerKib;

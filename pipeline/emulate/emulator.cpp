@@ -347,9 +347,12 @@ class FrameRunner {
       batch.group_memory = memory[w].data();
       batch.program = pass.compute;
       batch.counters = &workers_[w].chunks[group * bands / groups];
-      batch.counters->stats.compute_shader_invocations +=
-          static_cast<std::uint64_t>(batch.width * batch.height);
+      const auto invocations = static_cast<std::uint64_t>(batch.width * batch.height);
+      batch.counters->stats.compute_shader_invocations += invocations;
+      // Waves are counted once a phase of the group; an invocation has its registers once.
+      const std::uint64_t registers_before = batch.counters->shader.register_lanes;
       pass.compute->run(batch, pass.uniforms.get());
+      batch.counters->shader.register_lanes = registers_before + pass.compute->ops[0].registers * invocations;
     });
     finish_workers(pass, work);
   }

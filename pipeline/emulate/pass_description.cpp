@@ -6,6 +6,40 @@
 
 namespace hwsim::pipeline {
 
+namespace {
+
+/// What the pass's shaders read, first since it was drawn on. Shaders' stores and copies compress nothing.
+std::vector<ReadTargetWork> read_targets(const FrameGraph& graph, const CompiledGraph& compiled,
+                                         int position) {
+  const auto pass_at = [&](int p) -> const Pass& {
+    return graph.passes()[static_cast<std::size_t>(compiled.order[static_cast<std::size_t>(p)])];
+  };
+  const auto drawn_last = [&](ImageId image) {
+    for (int p = position - 1; p >= 0; --p) {
+      const Pass& earlier = pass_at(p);
+      if (std::ranges::count(earlier.color, image) > 0) return true;
+      if (earlier.depth == image && !earlier.depth_read_only) return true;
+      if (std::ranges::count(earlier.sampled, image) > 0 || std::ranges::count(earlier.targets, image) > 0)
+        return false;
+    }
+    return false;
+  };
+  std::vector<ReadTargetWork> targets;
+  const std::vector<ImageId>& sampled = pass_at(position).sampled;
+  for (std::size_t i = 0; i < sampled.size(); ++i) {
+    const bool before = std::find(sampled.begin(), sampled.begin() + static_cast<std::ptrdiff_t>(i),
+                                  sampled[i]) != sampled.begin() + static_cast<std::ptrdiff_t>(i);
+    if (before || !drawn_last(sampled[i])) continue;
+    const ImageDesc& desc = graph.image(sampled[i]);
+    targets.push_back({desc.format, desc.samples,
+                       static_cast<std::uint64_t>(desc.width) * static_cast<std::uint64_t>(desc.height) *
+                           static_cast<std::uint64_t>(desc.layers)});
+  }
+  return targets;
+}
+
+}  // namespace
+
 PassWork describe(const FrameGraph& graph, const CompiledGraph& compiled, int position,
                   std::span<const char> cleared) {
   const auto in_order = static_cast<std::size_t>(position);
@@ -40,6 +74,7 @@ PassWork describe(const FrameGraph& graph, const CompiledGraph& compiled, int po
     work.color_cleared_before =
         work.color_cleared_before && cleared[static_cast<std::size_t>(written[i].index)] != 0;
   }
+  work.read_targets = read_targets(graph, compiled, position);
   if (pass.compute != nullptr) {
     const int lanes = pass.compute->group_width * pass.compute->group_height;
     work.group_memory_lane_bytes = (pass.compute->group_memory_bytes + lanes - 1) / lanes;

@@ -173,6 +173,9 @@ std::vector<PassWork> single_path_passes() {
   PassWork color = memory;
   color.color_targets = {{Format::rgba8_unorm, 1, false}};
   passes.push_back(color);
+  PassWork reading = pass_of([](PassCounters& c) { c.shader.alu_issued_lane_ops_w32 = 999; });
+  reading.read_targets = {{Format::rgba8_unorm, 4, 9999}, {Format::d32_float, 1, 9999}};
+  passes.push_back(reading);
   return passes;
 }
 

@@ -42,7 +42,9 @@ TEST(Latency, ACoreWithNResidentSubgroupsTakesTheLifeOfOneForNOfThem) {
 TEST(Latency, RegistersBoundTheResidentSubgroups) {
   EXPECT_DOUBLE_EQ(shader_ns(waiting_pass(8, 0, 32), latency_gpu()), 1000.0 / 16 * 80);  // the gate: 16
   EXPECT_DOUBLE_EQ(shader_ns(waiting_pass(8, 0, 64), latency_gpu()), 1000.0 / 8 * 80);
-  EXPECT_DOUBLE_EQ(shader_ns(waiting_pass(8, 0, 4000), latency_gpu()), 1000.0 * 80);  // one always runs
+  GpuConfig gpu = latency_gpu();
+  gpu.registers_per_invocation_max = 4096;
+  EXPECT_DOUBLE_EQ(shader_ns(waiting_pass(8, 0, 4000), gpu), 1000.0 * 80);  // one always runs
 }
 
 TEST(Latency, GroupMemoryBoundsTheResidentSubgroups) {
@@ -97,6 +99,48 @@ TEST(Vliw, WordsAreNoFullerThanTheShaderAllowsAndNotFullerThanTheAverage) {
   EXPECT_DOUBLE_EQ(shader_ns(repeated(PassKind::full_screen, c, 1), gpu), 64'000.0 / (10 * 16 * 4));
   c.shader.vliw5_issued_words_w64 = 32'000;  // a chain: two slots filled
   EXPECT_DOUBLE_EQ(shader_ns(repeated(PassKind::full_screen, c, 1), gpu), 32'000.0 / (10 * 16));
+}
+
+TEST(Vliw, WordsOfFourSlotsHoldNoMoreAndSpecialFunctionsTakeThreeOfThem) {
+  GpuConfig gpu = sample_gpu();
+  gpu.fp32_lanes_per_core = 64;
+  gpu.sfu_lanes_per_core = 16;
+  gpu.vliw_slots = 4;
+  gpu.vliw_fill_slots = 3.2;
+  gpu.vliw_sfu_slots = 3;
+  gpu.subgroup_size = 64;
+  PassCounters c;
+  c.shader.alu_issued_lane_ops_w64 = 48'000;
+  c.shader.sfu_issued_lane_ops_w64 = 16'000;
+  EXPECT_DOUBLE_EQ(shader_ns(repeated(PassKind::full_screen, c, 1), gpu),
+                   (48'000.0 + 3 * 16'000.0) / (10 * 16 * 3.2));
+  c.shader.vliw5_issued_words_w64 = 64'000;  // a chain: one slot filled
+  EXPECT_DOUBLE_EQ(shader_ns(repeated(PassKind::full_screen, c, 1), gpu), 64'000.0 / (10 * 16));
+}
+
+TEST(Registers, ValuesBeyondWhatInstructionsCanNameAreStoredAndLoaded) {
+  GpuConfig gpu = sample_gpu();
+  gpu.registers_per_invocation_max = 63;
+  PassCounters c;
+  c.stats.compute_shader_invocations = 3200;
+  c.shader.register_lanes = 63 * 3200;
+  EXPECT_DOUBLE_EQ(shader_ns(repeated(PassKind::compute, c, 1), gpu), 0.0);
+  c.shader.register_lanes = 73 * 3200;
+  EXPECT_DOUBLE_EQ(shader_ns(repeated(PassKind::compute, c, 1), gpu),
+                   2.0 * 10 * 3200 / (10 * gpu.load_words_per_core_clk));
+}
+
+TEST(Registers, ThoseSpilledHoldNoRoomForOtherSubgroups) {
+  GpuConfig gpu = latency_gpu();
+  PassWork pass = waiting_pass(0, 1, 1);
+  PassCounters& c = pass.chunks[0];
+  c.shader.register_lanes = 200 * kLanes;
+  gpu.registers_kib_per_core = 128;  // 32'768 words: 5 subgroups with 200 registers, 16 with 64
+  gpu.registers_per_invocation_max = 4096;
+  const double held = shader_ns(pass, gpu);
+  gpu.registers_per_invocation_max = 64;
+  gpu.load_words_per_core_clk = 1e5;
+  EXPECT_NEAR(held / shader_ns(pass, gpu), 200.0 / 64.0, 1e-2);
 }
 
 TEST(Atomics, OfOneAddressTakeTurns) {
