@@ -180,8 +180,8 @@ TechniqueChoice parse_technique(std::string_view text) {
       check_pair(*choice.parts[i].info, *choice.parts[j].info, problems);
   if (!problems.empty()) throw InputError(std::move(problems), ExitStatus::usage);
   const auto order = [](const TechniquePart& part) {
-    constexpr std::array<int, 3> kRank = {1, 0, 2};  // base, modifier, filter
-    return kRank.at(static_cast<std::size_t>(part.info->kind()));
+    constexpr std::array<int, 3> kRank = {1, 0, 3};  // base, modifier, filter
+    return part.info->linear_input ? 2 : kRank.at(static_cast<std::size_t>(part.info->kind()));
   };
   std::stable_sort(choice.parts.begin(), choice.parts.end(),
                    [&](const auto& a, const auto& b) { return order(a) < order(b); });
@@ -230,9 +230,13 @@ pipeline::FrameGraph build_frame(const TechniqueChoice& choice, const FrameReque
   FrameRequest modified = request;
   for (const TechniquePart& part : choice.parts)
     if (part.info->modify) part.info->modify(modified, part.options);
+  modified.linear_output = !request.image && std::ranges::any_of(choice.parts, [](const TechniquePart& part) {
+    return part.info->linear_input;
+  });
   const TechniquePart& base = choice.base();
   pipeline::FrameGraph graph =
       request.image ? start_from_image(choice, request) : base.info->build(modified, base.options);
+  if (modified.linear_output) graph.make_output_linear();
   for (const TechniquePart& part : choice.parts)
     if (part.info->filter)
       graph.set_output(part.info->filter(graph, graph.output(), part.options), Format::rgba8_srgb);

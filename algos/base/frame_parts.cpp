@@ -67,6 +67,8 @@ DrawLists list_draws(const FrameRequest& request, const Camera& camera) {
 // PCG (O'Neill 2014): the same lights on every machine.
 class Pcg {
  public:
+  explicit Pcg(int seed)
+      : state_(0x853c49e6748fea9bull + 0x9e3779b97f4a7c15ull * static_cast<std::uint64_t>(seed)) {}
   float next() {
     state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
     const auto shifted = static_cast<std::uint32_t>(((state_ >> 18u) ^ state_) >> 27u);
@@ -76,27 +78,57 @@ class Pcg {
   }
 
  private:
-  std::uint64_t state_ = 0x853c49e6748fea9bull;
+  std::uint64_t state_;
 };
+
+/// The box that added lights lie in, and how far they reach.
+struct LightSpace {
+  glm::vec3 low{0.0f}, extent{0.0f};
+  float range_from = 0.0f, range_to = 0.0f;
+
+  /// Mean volume that a light reaches; ranges are uniform.
+  float light_m3() const {
+    const float from2 = range_from * range_from, to2 = range_to * range_to;
+    return 4.18879f * 0.25f * (range_from + range_to) * (from2 + to2);
+  }
+};
+
+LightSpace light_space(const FrameRequest& request) {
+  const SceneStats s = stats(*request.scene);
+  LightSpace space{s.bounds_min, s.bounds_max - s.bounds_min};
+  space.range_from = space.range_to = static_cast<float>(request.light_range) * glm::length(space.extent);
+  const AddedLights& added = request.added;
+  if (added.range_to_m > 0.0) {
+    space.range_to = static_cast<float>(added.range_to_m);
+    space.range_from = std::min(static_cast<float>(added.range_from_m), space.range_to);
+  }
+  const glm::vec3 middle = 0.5f * (s.bounds_min + s.bounds_max);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (added.box_m[axis] <= 0.0) continue;
+    space.extent[axis] = static_cast<float>(added.box_m[axis]);
+    space.low[axis] = middle[axis] - 0.5f * space.extent[axis];
+  }
+  return space;
+}
 
 void add_point_lights(const FrameRequest& request, int count, LightingUniforms& lighting) {
   if (count <= 0) return;
-  const SceneStats s = stats(*request.scene);
-  const glm::vec3 extent = s.bounds_max - s.bounds_min;
-  const float range = static_cast<float>(request.light_range) * glm::length(extent);
+  const LightSpace space = light_space(request);
   // Strength such that a light gives about 1/2 at a third of its range. Where more than two lights reach a
   // point, they share what two give: sixteen of full reach would leave most of the frame white.
-  const float scene_m3 = extent.x * extent.y * extent.z, light_m3 = 4.18879f * range * range * range;
-  const float lights_at_a_point =
-      static_cast<float>(count) * (light_m3 < scene_m3 ? light_m3 / scene_m3 : 1.0f);
-  const float strength = 0.5f * range * range / 9.0f / std::max(1.0f, lights_at_a_point / 2.0f);
-  Pcg random;
+  const float box_m3 = space.extent.x * space.extent.y * space.extent.z, light_m3 = space.light_m3();
+  const float lights_at_a_point = static_cast<float>(count) * (light_m3 < box_m3 ? light_m3 / box_m3 : 1.0f);
+  const float share = 1.0f / std::max(1.0f, lights_at_a_point / 2.0f);
+  Pcg random(request.added.seed);
   if (lighting.point_count == 0) lighting.points.clear();
   for (int i = 0; i < count; ++i) {
     PointLight light;
     for (int axis = 0; axis < 3; ++axis)
-      light.position[axis] = s.bounds_min[axis] + extent[axis] * random.next();
-    for (int axis = 0; axis < 3; ++axis) light.color[axis] = strength * (0.3f + 0.7f * random.next());
+      light.position[axis] = space.low[axis] + space.extent[axis] * random.next();
+    for (int axis = 0; axis < 3; ++axis) light.color[axis] = 0.3f + 0.7f * random.next();
+    float range = space.range_from;
+    if (space.range_to > range) range += (space.range_to - range) * random.next();
+    light.color *= share * 0.5f * range * range / 9.0f;
     light.inv_range2 = 1.0f / (range * range);
     lighting.points.push_back(light);
   }
@@ -252,6 +284,10 @@ LightingUniforms frame_lighting(const FrameRequest& request) {
   if (!request.metal_ambient) lighting.extended = has_unlit(scene);
   switch (request.lights) {
     case LightProfile::scene:
+      add_point_lights(request, request.point_lights, lighting);
+      break;
+    case LightProfile::added:
+      keep_lights(0, lighting);
       add_point_lights(request, request.point_lights, lighting);
       break;
     case LightProfile::simple:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <glm/glm.hpp>
 #include <memory>
 #include <span>
 #include <string>
@@ -21,8 +22,16 @@
 namespace hwsim::algos {
 
 /// Which lights a frame has: the scene's and those that the request adds; one, directional if there is one;
-/// or 16, seeded point lights where the scene has fewer (the two profiles of SBAA, section 5.2).
-enum class LightProfile : std::uint8_t { scene, simple, complex };
+/// 16, seeded point lights where the scene has fewer (the two profiles of SBAA, section 5.2); or those alone
+/// that the request adds.
+enum class LightProfile : std::uint8_t { scene, simple, complex, added };
+
+/// Where lights that a request adds lie and how far they reach, in the scene's unit.
+struct AddedLights {
+  glm::dvec3 box_m{0.0};  ///< sides of the box around the scene's middle; 0: the scene's extent
+  double range_from_m = 0.0, range_to_m = 0.0;  ///< ranges lie between; both 0: FrameRequest::light_range
+  int seed = 0;                                 ///< another one: other lights
+};
 inline constexpr int kComplexLights = 16;
 
 class SeparateDraws;  // frame_parts.h
@@ -34,10 +43,12 @@ struct FrameRequest {
   int camera = 0;             ///< index into Scene::cameras
   int point_lights = 0;       ///< 0..1024 seeded point lights added to those of the scene
   double light_range = 0.15;  ///< reach of the lights added, as a part of the scene's diagonal
+  AddedLights added;
   LightProfile lights = LightProfile::scene;
   bool shadows = true;  ///< a shadow map for the scene's shadow caster
   int shadow_map_px = 2048;
-  bool metal_ambient = true;  ///< metals reflect ambient light (pipeline::LightingUniforms::extended)
+  bool metal_ambient = true;   ///< metals reflect ambient light (pipeline::LightingUniforms::extended)
+  bool linear_output = false;  ///< a filter takes linear light: the output has half floats
   /// A modifier's: parts of the scene that it draws in its own way. Null: bases draw everything.
   std::shared_ptr<const SeparateDraws> separate;
   /// Stands for the scene, which is empty then: sRGB codes of a finished frame. Only filters work on it.
@@ -68,6 +79,8 @@ struct TechniqueInfo {
   std::function<pipeline::ImageId(pipeline::FrameGraph& graph, pipeline::ImageId input,
                                   const Options& options)>
       filter = nullptr;
+  /// A filter of linear light, beyond 1 too: it comes before the others.
+  bool linear_input = false;
   /// Why it cannot go with another technique; empty: it can.
   std::string_view (*refuses)(const TechniqueInfo& other) = nullptr;
   /// What a user should know of a frame that it made: notes and warnings with a code and a message, without

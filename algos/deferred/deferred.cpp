@@ -165,7 +165,7 @@ void add_classify_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer
 /// multisampled target that its other ways of lighting draw to: with layout=gb_lauritzen both make the 40
 /// bytes a sample of SBAA's reference (docs/techniques/deferred.md#g-buffers).
 void add_tile_passes(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
-                     std::shared_ptr<const void> uniforms) {
+                     std::shared_ptr<DeferredUniforms> uniforms) {
   const ImageId samples =
       graph.add_image({"lit_samples", g.layout->lit, graph.width(), graph.height(), g.samples, g.layers()});
   Pass& pass =
@@ -179,27 +179,52 @@ void add_tile_passes(FrameGraph& graph, const FrameParts& parts, const GBuffer& 
   add_over_output(graph, parts, output, g.depth, g.pattern, true);
 }
 
-void finish(FrameGraph& graph, const FrameParts& parts, const GBuffer& g) {
-  add_blended(graph, parts, "", lit_target(graph, g));
-  const ImageId output = add_output(graph);
-  if (g.layers() > 1) {
-    add_full_screen(graph, "resolve", {g.lit}, output, merge_program(),
-                    std::make_shared<MergeUniforms>(MergeUniforms{g.samples * g.layers()}));
-    return;
-  }
-  if (g.samples > 1) {
-    graph.add_resolve("resolve", g.lit, output);
-    return;
-  }
-  add_full_screen(graph, "present", {g.lit}, output, scale_program(), std::make_shared<ScaleUniforms>());
-}
-
 [[noreturn]] void refuse(std::string message, std::string help) {
   Diagnostic error;
   error.code = "T003";
   error.message = std::move(message);
   error.help = std::move(help);
   throw InputError(std::move(error), ExitStatus::usage);
+}
+
+/// Lit color of one sample a pixel as the frame's image: what takes linear light takes it as it is.
+void show(FrameGraph& graph, const FrameParts& parts, ImageId lit) {
+  if (parts.request->linear_output)
+    graph.set_output(lit);
+  else
+    add_full_screen(graph, "present", {lit}, add_output(graph), scale_program(),
+                    std::make_shared<ScaleUniforms>());
+}
+
+/// The tiles write the mean of a pixel's samples, so that lit color has one sample a pixel.
+void add_averaging_tiles(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
+                         const std::shared_ptr<DeferredUniforms>& uniforms) {
+  if (g.layers() > 1)
+    refuse("resolve = tiles with " + std::to_string(g.samples * g.layers()) + " samples in layers",
+           "emulate=off makes them samples of one layer, or resolve=pass averages layers");
+  uniforms->mean_in_tiles = true;
+  const ImageId mean = graph.add_image({"lit_mean", g.layout->lit, graph.width(), graph.height(), 1});
+  Pass& pass = add_frame_compute(
+      graph, "light_tiles", tile_light_program(g.layout->encoding, parts.lighting.extended, true), uniforms);
+  pass.targets = {mean};
+  bind_gbuffer(pass, parts, g);
+  show(graph, parts, mean);
+  add_over_output(graph, parts, graph.output(), g.depth, g.pattern, true);
+}
+
+void finish(FrameGraph& graph, const FrameParts& parts, const GBuffer& g) {
+  add_blended(graph, parts, "", lit_target(graph, g));
+  if (g.layers() == 1 && g.samples == 1) {
+    show(graph, parts, g.lit);
+    return;
+  }
+  const ImageId output = add_output(graph);
+  if (g.layers() > 1) {
+    add_full_screen(graph, "resolve", {g.lit}, output, merge_program(),
+                    std::make_shared<MergeUniforms>(MergeUniforms{g.samples * g.layers()}));
+    return;
+  }
+  graph.add_resolve("resolve", g.lit, output);
 }
 
 /// Coverage comes from the first target's alpha, which other layouts use for a value of their own.
@@ -211,6 +236,15 @@ void check_alpha_to_coverage(const GBuffer& g) {
   if (g.prepass)
     refuse("alpha_to_coverage = on with prepass = on",
            "a pass of depth alone has no color whose alpha would be coverage: one of both must be off");
+}
+
+void check_lighting(const GBuffer& g, const SimpleComplexOptions& options) {
+  const bool tiles = options.lighting == DeferredLighting::compute_tiles;
+  if (!tiles && options.resolve == TileResolve::tiles)
+    refuse("resolve = tiles with lighting = stencil", "lighting=compute has tiles");
+  if (!tiles && !info(g.layout->depth_multisampled).has_stencil)
+    refuse("lighting = stencil with layout = " + std::string(g.layout->id) + ", which has none",
+           "lighting=compute needs no stencil");
 }
 
 /// With one sample a pixel the tiles write what is shown.
@@ -246,6 +280,7 @@ FrameGraph build_simple_complex(const FrameRequest& request, const SimpleComplex
   GBuffer g = add_gbuffer(graph, request, options.gbuffer);
   g.alpha_to_coverage = options.alpha_to_coverage;
   check_alpha_to_coverage(g);
+  check_lighting(g, options);
   add_gbuffer_pass(graph, parts, g);
   const auto uniforms = make_uniforms(graph, parts, g);
   uniforms->normal_dot_min = static_cast<float>(options.normal_dot_min);
@@ -253,7 +288,10 @@ FrameGraph build_simple_complex(const FrameRequest& request, const SimpleComplex
   uniforms->compare_all = options.compare_all;
   if (options.lighting == DeferredLighting::compute_tiles) {
     uniforms->samples = options.gbuffer.samples;  // tiles light the layers' samples together
-    add_tile_passes(graph, parts, g, uniforms);
+    if (options.resolve == TileResolve::tiles)
+      add_averaging_tiles(graph, parts, g, uniforms);
+    else
+      add_tile_passes(graph, parts, g, uniforms);
     return graph;
   }
   add_classify_pass(graph, parts, g, uniforms);
@@ -286,6 +324,8 @@ void describe(OptionList& list, SimpleComplexOptions& o) {
   describe_gbuffer(list, o.gbuffer, 2);
   list.choice("lighting", o.lighting, "stencil|compute",
               "full-screen passes with stencil, or 16x16 compute tiles");
+  list.choice("resolve", o.resolve, "pass|tiles",
+              "with lighting=compute: samples are averaged in a pass of their own, or in the tiles");
   list.real("normal_dot_min", o.normal_dot_min, {0, 1},
             "normals further apart make a pixel complex (cosine)");
   list.real("z_scale", o.z_scale, {0, 1000},

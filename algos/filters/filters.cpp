@@ -8,9 +8,11 @@ TechniqueInfo axaa_filter();
 TechniqueInfo smaa_filter();
 TechniqueInfo cmaa_filter();
 TechniqueInfo mlaa_filter();
+TechniqueInfo tone_map_filter();
 
 Room filter_room() {
-  return {.techniques = {fxaa_filter(), axaa_filter(), smaa_filter(), cmaa_filter(), mlaa_filter()}};
+  return {.techniques = {fxaa_filter(), axaa_filter(), smaa_filter(), cmaa_filter(), mlaa_filter(),
+                         tone_map_filter()}};
 }
 
 }  // namespace hwsim::algos

@@ -14,7 +14,7 @@
 namespace hwsim::lab {
 namespace {
 
-constexpr std::array<std::string_view, 3> kLightProfiles = {"scene", "simple", "complex"};
+constexpr std::array<std::string_view, 4> kLightProfiles = {"scene", "simple", "complex", "added"};
 
 Engine plan_engine(const std::string& name, std::vector<Diagnostic>& problems) {
   if (const auto engine = engine_from_name(name)) return *engine;

@@ -33,11 +33,15 @@ struct View {
   std::string camera = "0";  ///< a name or an index
   int point_lights = 0;
   double light_range = 0.15;
+  double light_range_from = 0.0, light_range_to = 0.0;
+  double light_box_x = 0.0, light_box_y = 0.0, light_box_z = 0.0;
+  int light_seed = 0;
   std::string lights = "scene";
   bool shadows = true;
   int shadow_map_px = 2048;
   bool metal_ambient = true;
   int anisotropy = 1;
+  bool alpha_test = true;
   std::string reference_shadows = "map";
   double exposure = 0.0;  ///< factor on the file's lights; 0: automatic (pipeline::SceneLoadOptions)
   int memory_mib = 2048;  ///< that loading the scene may take
@@ -90,8 +94,9 @@ struct Field {
 
 template <class Visitor>
 void describe(Visitor& v, View& view) {
-  auto& [scene, resolution, camera, point_lights, light_range, lights, shadows, shadow_map_px, metal_ambient,
-         anisotropy, reference_shadows, exposure, memory_mib] = view;
+  auto& [scene, resolution, camera, point_lights, light_range, light_range_from, light_range_to, light_box_x,
+         light_box_y, light_box_z, light_seed, lights, shadows, shadow_map_px, metal_ambient, anisotropy,
+         alpha_test, reference_shadows, exposure, memory_mib] = view;
   auto& [width_px, height_px] = resolution;
   // The scene's content and the camera's index stand in the keys of caches, not what the user called them.
   v.field(
@@ -114,11 +119,41 @@ void describe(Visitor& v, View& view) {
            "light_range",
            kWork | kReference},
           light_range);
-  v.field({{"lights", 0, 0, kNoFlags, "scene, simple (one light) or complex (16 lights)"},
+  v.field({{"light_range_from", 0, 1e6, kNoFlags, "least reach of an added light, in the scene's unit"},
+           "scene",
+           "light_range_from",
+           kWork | kReference},
+          light_range_from);
+  v.field({{"light_range_to", 0, 1e6, kNoFlags,
+            "greatest reach of an added light, in the scene's unit: reaches lie evenly between; 0: all have "
+            "light_range"},
+           "scene",
+           "light_range_to",
+           kWork | kReference},
+          light_range_to);
+  const auto box = [&](std::string_view name, double& side) {
+    v.field({{name, 0, 1e6, kNoFlags,
+              "side of the box around the scene's middle that added lights lie in, in the scene's unit; 0: "
+              "the scene's own"},
+             "scene",
+             name,
+             kWork | kReference},
+            side);
+  };
+  box("light_box_x", light_box_x);
+  box("light_box_y", light_box_y);
+  box("light_box_z", light_box_z);
+  v.field({{"light_seed", 0, 1 << 20, kNoFlags, "another number: other places and colors of added lights"},
+           "scene",
+           "light_seed",
+           kWork | kReference},
+          light_seed);
+  v.field({{"lights", 0, 0, kNoFlags,
+            "scene, simple (one light), complex (16 lights) or added (none of the scene's)"},
            "scene",
            "lights",
            kWork | kReference,
-           "scene|simple|complex"},
+           "scene|simple|complex|added"},
           lights);
   v.field({{"shadows", 0, 1, kNoFlags, "a shadow map for the light that casts shadows"},
            "scene",
@@ -144,6 +179,11 @@ void describe(Visitor& v, View& view) {
        "anisotropy",
        kWork | kReference},
       anisotropy);
+  v.field({{"alpha_test", 0, 1, kNoFlags, "materials with an alpha test have it; false: they are opaque"},
+           "scene",
+           "alpha_test",
+           kWork | kReference},
+          alpha_test);
   v.field(
       {{"reference_shadows", 0, 0, kNoFlags,
         "the reference's shadows: map, the frame's own shadow map, or rays, which show what the map costs"},

@@ -143,6 +143,7 @@ pipeline::SceneLoadOptions load_options(const View& view) {
   options.max_memory_bytes = static_cast<std::uint64_t>(view.memory_mib) << 20;
   options.exposure = view.exposure;
   options.max_anisotropy = view.anisotropy;
+  options.alpha_test = view.alpha_test;
   return options;
 }
 
@@ -224,10 +225,12 @@ const std::shared_ptr<const pipeline::Scene>& SceneView::scene() {
 
 algos::FrameRequest SceneView::frame_request() {
   // All members by name, as in `describe`: a new one that is forgotten here does not compile.
-  const auto& [scene_name, resolution, camera, point_lights, light_range, lights, shadows, shadow_map_px,
-               metal_ambient, anisotropy, reference_shadows, exposure, memory_mib] = plan_;
-  static_cast<void>(scene_name), static_cast<void>(camera);             // scene(), camera_
-  static_cast<void>(anisotropy), static_cast<void>(exposure);           // load_options()
+  const auto& [scene_name, resolution, camera, point_lights, light_range, light_range_from, light_range_to,
+               light_box_x, light_box_y, light_box_z, light_seed, lights, shadows, shadow_map_px,
+               metal_ambient, anisotropy, alpha_test, reference_shadows, exposure, memory_mib] = plan_;
+  static_cast<void>(scene_name), static_cast<void>(camera);    // scene(), camera_
+  static_cast<void>(anisotropy), static_cast<void>(exposure);  // load_options()
+  static_cast<void>(alpha_test);
   static_cast<void>(memory_mib), static_cast<void>(reference_shadows);  // likewise, and elsewhere
   algos::FrameRequest request;
   request.scene = scene();
@@ -236,6 +239,7 @@ algos::FrameRequest SceneView::frame_request() {
   request.camera = camera_;
   request.point_lights = point_lights;
   request.light_range = light_range;
+  request.added = {{light_box_x, light_box_y, light_box_z}, light_range_from, light_range_to, light_seed};
   request.lights = light_profile_from_name(lights).value_or(algos::LightProfile::scene);
   request.shadows = shadows;
   request.shadow_map_px = shadow_map_px;

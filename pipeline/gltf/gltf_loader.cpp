@@ -254,6 +254,9 @@ Scene load(Report& report, ReadContainer&& container, const SceneLoadOptions& op
   scene.materials = std::move(set.materials);
   place_everything(scene, report, choose_placement(report, scene, drawn, model, nodes), drawn, nodes);
   add_view_and_light(scene, report, source, nodes);
+  if (!options.alpha_test)
+    for (Material& material : scene.materials)
+      if (material.alpha_mode == AlphaMode::mask) material.alpha_mode = AlphaMode::opaque;
   expose(scene, report, options.exposure);
   scene.textures = textures.get();
   scene.memory_bytes = budget.charged_bytes();

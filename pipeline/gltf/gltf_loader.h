@@ -20,6 +20,8 @@ struct SceneLoadOptions {
   /// Probes of a texture request at most, 1 to 16, along the longer axis of a pixel's footprint: of samplers
   /// that filter linearly. glTF has no word for it. No part of Scene::content_hash.
   int max_anisotropy = 1;
+  /// Materials with an alpha test have it, or are opaque. No part of Scene::content_hash.
+  bool alpha_test = true;
 };
 
 /// Reads a .gltf or .glb file. Throws InputError (codes S0xx) naming the file, the element

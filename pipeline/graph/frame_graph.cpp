@@ -57,6 +57,16 @@ ImageId FrameGraph::add_image(ImageDesc desc, std::shared_ptr<const RawImage> co
   return {static_cast<int>(images_.size()) - 1};
 }
 
+void FrameGraph::make_output_linear() {
+  const auto widen = [&](ImageId id) {
+    images_[static_cast<std::size_t>(id.index)].format = Format::rgba16_float;
+  };
+  widen(output_);
+  for (const Pass& pass : passes_)
+    if (pass.kind == PassKind::resolve && pass.targets.front() == output_) widen(pass.source);
+  output_view_ = Format::none;
+}
+
 BufferId FrameGraph::add_buffer(BufferDesc desc) {
   buffers_.push_back(std::move(desc));
   return {static_cast<int>(buffers_.size()) - 1};

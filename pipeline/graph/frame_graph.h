@@ -164,6 +164,10 @@ class FrameGraph {
     output_view_ = view;
   }
 
+  /// What is presented becomes linear light beyond 1 too: its format, and that of what is resolved into it,
+  /// are half floats.
+  void make_output_linear();
+
   /// None of the passes added so far is culled: something else than the output is looked at.
   void keep_passes() {
     for (Pass& pass : passes_) pass.keep = true;

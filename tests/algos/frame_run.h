@@ -22,8 +22,9 @@ inline std::vector<std::string> technique_variants() {
   for (const char* variant :
        {"ssaa4x:variant=accumulate", "ssaa4x:variant=sample_rate", "msaa4x:centroid=off",
         "deferred:samples=1", "deferred:samples=1,lighting=tiles,prepass=on",
-        "deferred_simple_complex:lighting=compute", "agaa:msaa=32", "csaa:mode=16xq,orphans=drop",
-        "none+fxaa:gather=off", "forward_plus:samples=4", "msaa4x:prepass=on",
+        "deferred_simple_complex:lighting=compute",
+        "deferred_simple_complex:samples=4,lighting=compute,resolve=tiles,layout=gb_mrt4", "agaa:msaa=32",
+        "csaa:mode=16xq,orphans=drop", "none+fxaa:gather=off", "forward_plus:samples=4", "msaa4x:prepass=on",
         "sss_cs:atomics=integer,rest=frame", "sss_ppll:node_bytes=32",
         "agaa:c=4,ndf=sggx,brdf=ggx,accumulate=atomics"})
     all.emplace_back(variant);

@@ -99,6 +99,11 @@ void write_gbuffer(S& s, const GBufferValues<F>& v) {
     s.output(2, {v.base.x, v.base.y, v.base.z, v.metallic});
     s.output(3, {v.emissive.x, v.emissive.y, v.emissive.z, F(1.0f)});
     s.output(4, {v.gradient.x, v.gradient.y, F(0.0f), F(0.0f)});
+  } else if constexpr (kEncoding == GBufferEncoding::split) {
+    s.output(0, {n.x, n.y, F(0.0f), F(0.0f)});
+    s.output(1, {v.roughness, luminance(v.emissive), F(0.0f), F(0.0f)});
+    s.output(2, {v.base.x, v.base.y, v.base.z, v.metallic});
+    s.output(3, {v.gradient.x, v.gradient.y, F(0.0f), F(0.0f)});
   } else {
     lanes::Surface<F> surface;
     lanes::set_material(v.base, v.metallic, v.roughness, surface);
@@ -148,9 +153,15 @@ GBufferSample<typename S::F, typename S::M> read_gbuffer(S& s, const DeferredUni
     out.covered = z < F(1.0f);
     surface.position = unproject<S>(u.world_from_clip, u, x, y, ox, oy, z);
     surface.normal = decode_normal(first.x, first.y);
-    F emissive = first.w;
+    F emissive = first.w, roughness = second.w;
     if constexpr (kEncoding == GBufferEncoding::gradients) {
-      lanes::set_material(lanes::Vec3<F>{second.x, second.y, second.z}, second.w, first.z, surface);
+      roughness = first.z;
+      lanes::set_material(lanes::Vec3<F>{second.x, second.y, second.z}, second.w, roughness, surface);
+    } else if constexpr (kEncoding == GBufferEncoding::split) {
+      const auto base = s.load_image(2, x, y, sample);
+      roughness = second.x;
+      lanes::set_material(lanes::Vec3<F>{base.x, base.y, base.z}, base.w, roughness, surface);
+      emissive = second.y;
     } else {
       const auto specular = s.load_image(2, x, y, sample);
       lanes::set_roughness(second.w, surface);
@@ -159,7 +170,7 @@ GBufferSample<typename S::F, typename S::M> read_gbuffer(S& s, const DeferredUni
       emissive = specular.w;
     }
     surface.emissive = {emissive, emissive, emissive};
-    show_marked(u.lighting, kEncoding == GBufferEncoding::gradients ? first.z : second.w, surface);
+    show_marked(u.lighting, roughness, surface);
   }
   surface.to_eye = normalize(lanes::broadcast<F>(u.lighting.eye) - surface.position);
   return out;
@@ -211,7 +222,9 @@ F depth_span(S& s, const DeferredUniforms& u, typename S::I x, typename S::I y, 
     const F slope = abs(z) / max(abs(facing), F(1e-4f));
     return (abs(n.x) * abs(step_x) + abs(n.y) * abs(step_y)) * slope;
   } else {
-    constexpr int kGradientSlot = kEncoding == GBufferEncoding::record ? 4 : 2;
+    constexpr int kGradientSlot = kEncoding == GBufferEncoding::record  ? 4
+                                  : kEncoding == GBufferEncoding::split ? 3
+                                                                        : 2;
     const auto gradient = s.load_image(kGradientSlot, x, y, I(base));
     return abs(gradient.x) + abs(gradient.y);
   }

@@ -10,7 +10,9 @@ namespace hwsim::algos {
 
 /// Image slots of lighting passes: the layout's attachments in order, then depth where the encoding has no
 /// position. The shadow map follows them.
-constexpr int depth_slot(GBufferEncoding encoding) { return encoding == GBufferEncoding::record ? -1 : 3; }
+constexpr int depth_slot(GBufferEncoding encoding) {
+  return encoding == GBufferEncoding::record ? -1 : encoding == GBufferEncoding::split ? 4 : 3;
+}
 
 struct DeferredUniforms {
   pipeline::LightingUniforms lighting;
@@ -23,6 +25,7 @@ struct DeferredUniforms {
   float normal_dot_min = 0.99f;
   float z_scale = 1.0f;
   bool compare_all = false;
+  bool mean_in_tiles = false;  ///< compute tiles write the mean of a pixel's samples, not the samples
 };
 
 }  // namespace hwsim::algos

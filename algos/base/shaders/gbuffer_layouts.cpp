@@ -14,6 +14,10 @@ constexpr GBufferAttachment kRecord[] = {{"gbuffer_position", Format::rgba32_flo
 constexpr GBufferAttachment kCompact[] = {{"gbuffer_normal", Format::rg16_snorm},
                                           {"gbuffer_albedo", Format::rgba8_srgb},
                                           {"gbuffer_specular", Format::rgba8_srgb}};
+constexpr GBufferAttachment kSplit[] = {{"gbuffer_normal", Format::rg16_snorm},
+                                        {"gbuffer_surface", Format::rgba8_unorm},
+                                        {"gbuffer_albedo", Format::rgba8_srgb},
+                                        {"gbuffer_gradient", Format::rg16_float}};
 
 // 40 bytes as 32 + 4 + 4: docs/techniques/deferred.md#g-buffers. 16 bytes with depth:
 // docs/techniques/agaa.md#memory.
@@ -26,6 +30,8 @@ constexpr GBufferLayout kLayouts[] = {
      Format::d24_unorm_s8, Format::d24_unorm_s8, Format::rgba8_srgb},
     {"gb_20", "20 bytes a sample, depth included, as typical for games", GBufferEncoding::gradients,
      kLauritzen, Format::d24_unorm_s8, Format::d24_unorm_s8, Format::rgba8_srgb},
+    {"gb_mrt4", "four targets of 32 bits and depth without stencil, lit color in half floats",
+     GBufferEncoding::split, kSplit, Format::d32_float, Format::d32_float, Format::rgba16_float},
 };
 
 }  // namespace

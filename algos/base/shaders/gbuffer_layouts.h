@@ -14,7 +14,8 @@ namespace hwsim::algos {
 enum class GBufferEncoding : std::uint8_t {
   gradients,  ///< normal, roughness and luminance of emission; base color and metallic; depth gradients
   record,     ///< the 32 bytes that SBAA keeps of a surface: position and colored emission too
-  compact     ///< diffuse and specular color instead of base color and metallic; no gradients
+  compact,    ///< diffuse and specular color instead of base color and metallic; no gradients
+  split       ///< what `gradients` holds, in four targets of 32 bits
 };
 
 struct GBufferAttachment {
@@ -33,7 +34,7 @@ struct GBufferLayout {
 };
 
 /// Choices of the parameter `layout`, in the order of gbuffer_layouts().
-inline constexpr std::string_view kLayoutChoices = "gb_lauritzen|gb_sbaa40|gb_agaa16|gb_20";
+inline constexpr std::string_view kLayoutChoices = "gb_lauritzen|gb_sbaa40|gb_agaa16|gb_20|gb_mrt4";
 std::span<const GBufferLayout> gbuffer_layouts();
 
 /// Bytes of a sample: attachments and depth, without lit color.

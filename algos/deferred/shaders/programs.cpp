@@ -75,11 +75,12 @@ void run(pipeline::FragmentBatch& b, const void* u) {
 using Run = void (*)(pipeline::FragmentBatch&, const void*);
 constexpr Run kGBuffer[] = {run<GBufferShader<E::gradients, false>>, run<GBufferShader<E::gradients, true>>,
                             run<GBufferShader<E::record, false>>,    run<GBufferShader<E::record, true>>,
-                            run<GBufferShader<E::compact, false>>,   run<GBufferShader<E::compact, true>>};
+                            run<GBufferShader<E::compact, false>>,   run<GBufferShader<E::compact, true>>,
+                            run<GBufferShader<E::split, false>>,     run<GBufferShader<E::split, true>>};
 constexpr Run kClassify[] = {run<ClassifyShader<E::gradients>>, run<ClassifyShader<E::record>>,
-                             run<ClassifyShader<E::compact>>};
+                             run<ClassifyShader<E::compact>>, run<ClassifyShader<E::split>>};
 constexpr Run kLight[] = {run<DeferredLightShader<E::gradients>>, run<DeferredLightShader<E::record>>,
-                          run<DeferredLightShader<E::compact>>};
+                          run<DeferredLightShader<E::compact>>, run<DeferredLightShader<E::split>>};
 
 void run_gbuffer(int which, pipeline::FragmentBatch& b, const void* u) { kGBuffer[which](b, u); }
 void run_classify(int which, pipeline::FragmentBatch& b, const void* u) { kClassify[which](b, u); }
@@ -156,6 +157,7 @@ const FragmentProgram& choose(GBufferEncoding encoding, Result&& result) {
   static const EncodingPrograms<GBufferEncoding::gradients> gradients;
   static const EncodingPrograms<GBufferEncoding::record> record;
   static const EncodingPrograms<GBufferEncoding::compact> compact;
+  static const EncodingPrograms<GBufferEncoding::split> split;
   switch (encoding) {
     case GBufferEncoding::gradients:
       return result(gradients);
@@ -163,6 +165,8 @@ const FragmentProgram& choose(GBufferEncoding encoding, Result&& result) {
       return result(record);
     case GBufferEncoding::compact:
       return result(compact);
+    case GBufferEncoding::split:
+      return result(split);
   }
   return result(gradients);
 }

@@ -22,6 +22,7 @@ const pipeline::FragmentProgram& classify_program(GBufferEncoding encoding);
 const pipeline::FragmentProgram& deferred_light_program(GBufferEncoding encoding, bool extended = false);
 /// 16x16 tiles: lights culled against the tile's depth bounds, sample 0 of each pixel lit, further samples of
 /// complex pixels redistributed over the group.
-const pipeline::ComputeProgram& tile_light_program(GBufferEncoding encoding, bool extended = false);
+const pipeline::ComputeProgram& tile_light_program(GBufferEncoding encoding, bool extended = false,
+                                                   bool means = false);
 
 }  // namespace hwsim::algos

@@ -22,7 +22,8 @@ enum TileBlock : int {
   kFirstSampleBlock = 3,
   kTileClassifyBlock = 4,  // and the next one
   kOtherSampleBlock = 10,
-  kReplicateBlock = 11  // a simple pixel's color stored to a further sample
+  kReplicateBlock = 11,  // a simple pixel's color stored to a further sample
+  kMeanBlock = 12        // the mean of a complex pixel's samples
 };
 
 template <GBufferEncoding kEncoding, class S, class Bounds>
@@ -48,9 +49,30 @@ struct CountBounds {
   void add(pipeline::CountF z, pipeline::CountM) { max(min(z, z), z); }
 };
 
+/// The most registers that a phase needs: the group waits for itself between them, and nothing but a pixel's
+/// place lives on.
+template <GBufferEncoding kEncoding>
+std::uint32_t registers_of_phases(const DeferredUniforms& u, std::span<const pipeline::PointLight> points) {
+  using F = pipeline::CountF;
+  using I = pipeline::CountI;
+  lanes::CountFragment bounds_phase, light_phase, classify_phase;
+  CountBounds bounds;
+  gather_bounds<kEncoding>(bounds_phase, u, bounds);
+  light_phase.branch(kFirstSampleBlock, light_phase.valid(), [&]() HWY_ATTR {
+    (void)light_at<kEncoding>(light_phase, u, points, I(0), F(0.0f), F(0.0f));
+  });
+  (void)is_complex<kEncoding>(classify_phase, u, kTileClassifyBlock, classify_phase.pixel_x(),
+                              classify_phase.pixel_y());
+  std::uint32_t most = 0;
+  for (const lanes::CountFragment* phase : {&bounds_phase, &light_phase, &classify_phase})
+    most = std::max(most, phase->blocks()[0].registers);
+  return most;
+}
+
 /// One pass through every block, for the operation counts.
 template <GBufferEncoding kEncoding>
-pipeline::ComputeProgram describe_tile_light(bool extended, void (*run)(pipeline::GroupBatch&, const void*)) {
+pipeline::ComputeProgram describe_tile_light(bool extended, bool means,
+                                             void (*run)(pipeline::GroupBatch&, const void*)) {
   lanes::CountFragment s;
   DeferredUniforms u;
   u.lighting.extended = extended;
@@ -67,16 +89,18 @@ pipeline::ComputeProgram describe_tile_light(bool extended, void (*run)(pipeline
                                        max(v.z - p.z, p.z - v.w)};
              (void)(dot(d, d) < v.x);
            });
-  s.branch(kFirstSampleBlock, s.valid(), [&]() HWY_ATTR {
-    s.store_image(0, s.pixel_x(), s.pixel_y(), I(0),
-                  light_at<kEncoding>(s, u, points, I(0), F(0.0f), F(0.0f)), s.valid());
-  });
+  const auto lit_block = [&]() HWY_ATTR {
+    const auto color = light_at<kEncoding>(s, u, points, I(0), F(0.0f), F(0.0f));
+    if (!means) s.store_image(0, s.pixel_x(), s.pixel_y(), I(0), color, s.valid());
+  };
+  s.branch(kFirstSampleBlock, s.valid(), lit_block);
   (void)is_complex<kEncoding>(s, u, kTileClassifyBlock, s.pixel_x(), s.pixel_y());
-  s.branch(kOtherSampleBlock, s.valid(), [&]() HWY_ATTR {
-    s.store_image(0, s.pixel_x(), s.pixel_y(), I(0),
-                  light_at<kEncoding>(s, u, points, I(0), F(0.0f), F(0.0f)), s.valid());
-  });
+  s.branch(kOtherSampleBlock, s.valid(), lit_block);
   s.branch(kReplicateBlock, s.valid(), [&]() HWY_ATTR { s.store_image(0, I(0), I(0), I(0), {}, s.valid()); });
+  s.branch(kMeanBlock, s.valid(), [&]() HWY_ATTR {
+    const lanes::Vec4<F> sum = {F(0.0f), F(0.0f), F(0.0f), F(0.0f)};
+    s.store_image(0, s.pixel_x(), s.pixel_y(), I(0), sum * F(1.0f), s.valid());
+  });
   pipeline::ComputeProgram program;
   program.name = "tile_light";
   program.run = run;
@@ -88,12 +112,16 @@ pipeline::ComputeProgram describe_tile_light(bool extended, void (*run)(pipeline
   for (const int block :
        {lanes::kShadowBlock, lanes::kDirectionalBlock, lanes::kPointBlock, lanes::kPointInRangeBlock})
     program.ops[static_cast<std::size_t>(block)] = once.blocks()[static_cast<std::size_t>(block)];
+  program.ops[0].registers = registers_of_phases<kEncoding>(u, points);
   program.ops[kCullBlock].group_memory = 1;
   program.ops[kTileClassifyBlock].group_memory = 1;
-  program.ops[kOtherSampleBlock].group_memory = 1;
+  program.ops[kOtherSampleBlock].group_memory = means ? 4 : 1;
+  program.ops[kMeanBlock].group_memory = 3;
   program.block_count = s.block_count();
   program.group_width = program.group_height = kWaveTilePx;
-  program.group_memory_bytes = 4 * (1024 + kWaveTilePx * kWaveTilePx * 32);
+  // The tile's lights, and the pixels whose samples are lit apart: the number of a sample follows from that
+  // of the invocation. Then sums of their colors, where they are averaged here.
+  program.group_memory_bytes = 4 * (1024 + kWaveTilePx * kWaveTilePx * (means ? 4 : 1));
   return program;
 }
 
@@ -124,6 +152,7 @@ class TileLighter {
     cull_lights();
     light_first_samples();
     light_other_samples();
+    if (means()) store_means();
   }
 
  private:
@@ -190,6 +219,8 @@ class TileLighter {
     }
   }
 
+  bool means() const { return u_.mean_in_tiles && u_.samples > 1; }
+
   static LaneF offset(int sixteenths) { return LaneF(static_cast<float>(sixteenths) * 0.0625f); }
 
   void light_first_samples() {
@@ -198,11 +229,19 @@ class TileLighter {
       s.branch(kFirstSampleBlock, s.valid(), [&]() HWY_ATTR {
         color = light_at<kEncoding>(s, u_, points_, LaneI(0), offset(u_.positions[0].x),
                                     offset(u_.positions[0].y));
-        s.store_image(0, s.pixel_x(), s.pixel_y(), LaneI(0), color, s.valid());
+        if (!means()) s.store_image(0, s.pixel_x(), s.pixel_y(), LaneI(0), color, s.valid());
       });
       if (u_.samples == 1) return;
       const LaneM complex =
           is_complex<kEncoding>(s, u_, kTileClassifyBlock, s.pixel_x(), s.pixel_y()) & s.valid();
+      if (means()) {
+        const LaneM simple = !complex & s.valid();
+        s.branch(kReplicateBlock, simple,
+                 [&]() HWY_ATTR { s.store_image(0, s.pixel_x(), s.pixel_y(), LaneI(0), color, simple); });
+        add_to_means(s.pixel_x(), s.pixel_y(), color, complex);
+        remember(s, complex);
+        return;
+      }
       s.loop(kReplicateBlock, u_.samples - 1, !complex, [&](int i) HWY_ATTR {
         s.store_image(0, s.pixel_x(), s.pixel_y(), LaneI(i + 1), color, !complex);
       });
@@ -218,6 +257,46 @@ class TileLighter {
       const int lane = __builtin_ctz(bits);
       for (int i = 1; i < u_.samples; ++i) work_[work_count_++] = {x[lane], y[lane], i};
     }
+  }
+
+  int place(int x, int y) const { return (y - y0_) * kWaveTilePx + x - x0_; }
+
+  void add_to_means(LaneI px, LaneI py, const lanes::Vec4<LaneF>& color, LaneM mask) {
+    HWY_ALIGN std::int32_t x[kVectorLanes], y[kVectorLanes];
+    HWY_ALIGN float rgb[3][kVectorLanes];
+    lanes::store(px, x);
+    lanes::store(py, y);
+    lanes::store(color.x, rgb[0]);
+    lanes::store(color.y, rgb[1]);
+    lanes::store(color.z, rgb[2]);
+    for (std::uint32_t bits = lanes::mask_bits(mask); bits != 0; bits &= bits - 1) {
+      const int lane = __builtin_ctz(bits), at = place(x[lane], y[lane]);
+      for (int c = 0; c < 3; ++c) sums_[c][at] += rgb[c][lane];
+    }
+  }
+
+  /// Complex pixels: those that remember() gave items.
+  void store_means() {
+    bool complex[kWaveTilePx * kWaveTilePx] = {};
+    for (int i = 0; i < work_count_; ++i) complex[place(work_[i].x, work_[i].y)] = true;
+    const LaneF share(1.0f / static_cast<float>(u_.samples));
+    for_each_pixel([&](ComputeLanes& s) HWY_ATTR {
+      HWY_ALIGN std::int32_t x[kVectorLanes], y[kVectorLanes], summed[kVectorLanes];
+      HWY_ALIGN float rgb[3][kVectorLanes];
+      lanes::store(s.pixel_x(), x);
+      lanes::store(s.pixel_y(), y);
+      for (int lane = 0; lane < kVectorLanes; ++lane) {
+        const int at = place(x[lane], y[lane]);
+        summed[lane] = complex[at] ? 1 : 0;
+        for (int c = 0; c < 3; ++c) rgb[c][lane] = sums_[c][at];
+      }
+      const LaneM mask = (lanes::load(summed) == LaneI(1)) & s.valid();
+      s.branch(kMeanBlock, mask, [&]() HWY_ATTR {
+        const lanes::Vec4<LaneF> sum = {lanes::load(rgb[0]), lanes::load(rgb[1]), lanes::load(rgb[2]),
+                                        LaneF(static_cast<float>(u_.samples))};
+        s.store_image(0, s.pixel_x(), s.pixel_y(), LaneI(0), sum * share, mask);
+      });
+    });
   }
 
   // The remaining samples, spread over all invocations: no lane idles beside a complex neighbor.
@@ -245,9 +324,11 @@ class TileLighter {
     const LaneI samples = lanes::load(sample);
     ComputeLanes s(g_, first_lane, lanes::load(x), lanes::load(y), samples, lanes::load(valid) == LaneI(1));
     s.branch(kOtherSampleBlock, s.valid(), [&]() HWY_ATTR {
-      s.store_image(0, s.pixel_x(), s.pixel_y(), samples,
-                    light_at<kEncoding>(s, u_, points_, samples, lanes::load(ox), lanes::load(oy)),
-                    s.valid());
+      const auto color = light_at<kEncoding>(s, u_, points_, samples, lanes::load(ox), lanes::load(oy));
+      if (means())
+        add_to_means(s.pixel_x(), s.pixel_y(), color, s.valid());
+      else
+        s.store_image(0, s.pixel_x(), s.pixel_y(), samples, color, s.valid());
     });
   }
 
@@ -261,6 +342,7 @@ class TileLighter {
   std::vector<pipeline::PointLight> points_;
   int work_count_ = 0;
   Item work_[kWaveTilePx * kWaveTilePx * 31];
+  float sums_[3][kWaveTilePx * kWaveTilePx] = {};  ///< colors of complex pixels
 };
 
 template <GBufferEncoding kEncoding>
@@ -276,6 +358,8 @@ void run_tile_light(GBufferEncoding encoding, pipeline::GroupBatch& group, const
       return run_tile<GBufferEncoding::record>(group, uniforms);
     case GBufferEncoding::compact:
       return run_tile<GBufferEncoding::compact>(group, uniforms);
+    case GBufferEncoding::split:
+      return run_tile<GBufferEncoding::split>(group, uniforms);
   }
 }
 
@@ -287,29 +371,34 @@ namespace hwsim::algos {
 HWY_EXPORT(run_tile_light);
 
 template <GBufferEncoding kEncoding>
-pipeline::ComputeProgram describe(bool extended) {
-  return HWY_NAMESPACE::describe_tile_light<kEncoding>(extended, [](pipeline::GroupBatch& g, const void* u) {
-    HWY_DYNAMIC_DISPATCH(run_tile_light)
-    (kEncoding, g, u);
-  });
+pipeline::ComputeProgram describe(bool extended, bool means) {
+  return HWY_NAMESPACE::describe_tile_light<kEncoding>(extended, means,
+                                                       [](pipeline::GroupBatch& g, const void* u) {
+                                                         HWY_DYNAMIC_DISPATCH(run_tile_light)
+                                                         (kEncoding, g, u);
+                                                       });
 }
 
 template <GBufferEncoding kEncoding>
-const pipeline::ComputeProgram& program_of(bool extended) {
-  static const pipeline::ComputeProgram programs[] = {describe<kEncoding>(false), describe<kEncoding>(true)};
-  return programs[extended ? 1 : 0];
+const pipeline::ComputeProgram& program_of(bool extended, bool means) {
+  static const pipeline::ComputeProgram programs[] = {
+      describe<kEncoding>(false, false), describe<kEncoding>(true, false), describe<kEncoding>(false, true),
+      describe<kEncoding>(true, true)};
+  return programs[(means ? 2 : 0) + (extended ? 1 : 0)];
 }
 
-const pipeline::ComputeProgram& tile_light_program(GBufferEncoding encoding, bool extended) {
+const pipeline::ComputeProgram& tile_light_program(GBufferEncoding encoding, bool extended, bool means) {
   switch (encoding) {
     case GBufferEncoding::gradients:
-      return program_of<GBufferEncoding::gradients>(extended);
+      return program_of<GBufferEncoding::gradients>(extended, means);
     case GBufferEncoding::record:
-      return program_of<GBufferEncoding::record>(extended);
+      return program_of<GBufferEncoding::record>(extended, means);
     case GBufferEncoding::compact:
-      return program_of<GBufferEncoding::compact>(extended);
+      return program_of<GBufferEncoding::compact>(extended, means);
+    case GBufferEncoding::split:
+      return program_of<GBufferEncoding::split>(extended, means);
   }
-  return program_of<GBufferEncoding::gradients>(extended);
+  return program_of<GBufferEncoding::gradients>(extended, means);
 }
 
 }  // namespace hwsim::algos
