@@ -47,8 +47,9 @@ bool credible(const Calibration& calibration, const std::string& gpu) {
   });
 }
 
-Support support_of(const Calibration& calibration, const GpuConfig& gpu, const std::string& hash,
+Support support_of(const Calibration& calibration, const GpuConfig& gpu, const std::string& fitted_id,
                    const std::string& technique) {
+  const std::string& hash = calibration.gpu_hashes.at(fitted_id);
   const auto same_kind = [&](const std::string& other) {
     return technique_id(other) == technique_id(technique);
   };
@@ -56,9 +57,9 @@ Support support_of(const Calibration& calibration, const GpuConfig& gpu, const s
     return std::ranges::any_of(entry.second, same_kind);
   });
   if (changed(calibration, gpu, hash) || !somewhere) return Support::extrapolated;
-  const auto here = calibration.techniques.find(gpu.id);
+  const auto here = calibration.techniques.find(fitted_id);
   const bool fitted = here != calibration.techniques.end() && here->second.contains(technique);
-  return fitted && credible(calibration, gpu.id) ? Support::calibrated : Support::interpolated;
+  return fitted && credible(calibration, fitted_id) ? Support::calibrated : Support::interpolated;
 }
 
 /// No frame of a user is a published one: the narrowest interval is that of a scene that the fit did not see.
@@ -96,6 +97,13 @@ double moved_squares(const NamedParts& before, const NamedParts& after) {
 
 }  // namespace
 
+std::string calibrated_id(const Calibration& calibration, const GpuConfig& gpu) {
+  if (calibration.gpu_hashes.contains(gpu.id)) return gpu.id;
+  const auto parent = std::ranges::find_if(
+      gpu.parents, [&](const std::string& id) { return calibration.gpu_hashes.contains(id); });
+  return parent == gpu.parents.end() ? std::string() : *parent;
+}
+
 std::vector<std::string> interval_keys(const Calibration& calibration, const std::string& gpu) {
   std::vector<std::string> keys;
   for (const CalibratedParameter& p : calibration.parameters)
@@ -105,15 +113,15 @@ std::vector<std::string> interval_keys(const Calibration& calibration, const std
 
 FrameInterval frame_interval(const Calibration& calibration, const TimedFrame& frame, const GpuConfig& gpu,
                              const std::string& technique) {
-  const auto hash = calibration.gpu_hashes.find(gpu.id);
-  if (hash == calibration.gpu_hashes.end()) return {};
-  FrameInterval result{support_of(calibration, gpu, hash->second, technique), {}, {}};
+  const std::string fitted_id = calibrated_id(calibration, gpu);
+  if (fitted_id.empty()) return {};
+  FrameInterval result{support_of(calibration, gpu, fitted_id, technique), {}, {}};
   GpuValues<double> values = gpu;
   const std::vector<Key> keys = keys_of(values);
   std::vector<double> gradient(calibration.parameters.size(), 0.0);
   for (std::size_t i = 0, next = 0; i < gradient.size(); ++i) {
     const CalibratedParameter& p = calibration.parameters[i];
-    if (!of_interval(calibration, p, gpu.id)) continue;
+    if (!of_interval(calibration, p, fitted_id)) continue;
     const double slope_ns = frame.slopes_ns.at(next++);
     const Key* key = find_key(keys, p.name);
     if (key && frame.time_ns > 0.0)

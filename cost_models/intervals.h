@@ -31,6 +31,10 @@ struct TimedFrame {
   std::vector<double> slopes_ns;
 };
 
+/// The GPU itself where it was fitted, else the nearest that its file extends and that was: its numbers are
+/// changed ones of that. Empty: none.
+std::string calibrated_id(const Calibration& calibration, const GpuConfig& gpu);
+
 /// The fitted keys of a GPU, which its intervals come from.
 std::vector<std::string> interval_keys(const Calibration& calibration, const std::string& gpu);
 

@@ -46,6 +46,7 @@ struct GpuValues : HWSIM_GPU_PARTS(HWSIM_PART_VALUES) NoValues {
 
 struct GpuConfig : GpuValues<double> {
   std::string id;
+  std::vector<std::string> parents;  ///< ids of the GPUs that its file extends, the nearest first
   std::string title;
   std::string vendor;
   std::string architecture;

@@ -12,8 +12,9 @@ namespace hwsim {
 class GpuFiles {
  public:
   /// Reads the files. What is wrong in them is thrown by `with`, together with what is wrong in the settings.
+  /// `preferred_dir`: where an id is looked for first, that of a parent too; empty: nowhere.
   GpuFiles(const std::string& id_or_path, std::span<const std::string> overlays,
-           const std::string& config_dir);
+           const std::string& config_dir, const std::string& preferred_dir = {});
 
   /// The GPU with those of `sets` whose group is "gpu": what load_gpu gives. Throws InputError with every
   /// problem found.

@@ -56,9 +56,13 @@ std::optional<Provenance> provenance_from_name(std::string_view name) {
 
 class GpuFiles::Loader {
  public:
-  explicit Loader(std::string config_dir) : config_dir_(std::move(config_dir)), keys_(keys_of(config_)) {}
+  Loader(std::string config_dir, std::string preferred_dir)
+      : config_dir_(std::move(config_dir)),
+        preferred_dir_(std::move(preferred_dir)),
+        keys_(keys_of(config_)) {}
   Loader(const Loader& other)
       : config_dir_(other.config_dir_),
+        preferred_dir_(other.preferred_dir_),
         base_path_(other.base_path_),
         config_(other.config_),
         keys_(keys_of(config_)),
@@ -120,7 +124,8 @@ class GpuFiles::Loader {
     const std::string identity = fs::weakly_canonical(*parent, error).string();
     const bool circle = std::find(chain.begin(), chain.end(), identity) != chain.end();
     if (!circle && chain.size() < kChainMax) {
-      file_with_parents(*parent, Origin::Layer::parent, chain);
+      config_.parents.insert(config_.parents.begin(),
+                             file_with_parents(*parent, Origin::Layer::parent, chain));
       return;
     }
     Diagnostic d;
@@ -200,7 +205,7 @@ class GpuFiles::Loader {
       if (fs::is_regular_file(path, error)) return path.string();
     } else {
       std::optional<std::string> itself;
-      for (const std::string& dir : {folder, config_dir_}) {
+      for (const std::string& dir : {preferred_dir_, folder, config_dir_}) {
         const fs::path path = fs::path(dir) / (name + ".toml");
         if (dir.empty() || !fs::is_regular_file(path, error)) continue;
         if (!fs::equivalent(path, fs::path(child), error)) return path.string();
@@ -332,7 +337,7 @@ class GpuFiles::Loader {
     problems_.push_back(std::move(d));
   }
 
-  std::string config_dir_;
+  std::string config_dir_, preferred_dir_;
   std::string base_path_;
   GpuConfig config_;
   std::vector<Key> keys_;  ///< slots point into config_
@@ -375,8 +380,8 @@ bool lay_over(GpuConfig& gpu, std::span<const Assignment> sets) {
 }  // namespace
 
 GpuFiles::GpuFiles(const std::string& id_or_path, std::span<const std::string> overlays,
-                   const std::string& config_dir) {
-  auto loader = std::make_shared<Loader>(config_dir);
+                   const std::string& config_dir, const std::string& preferred_dir) {
+  auto loader = std::make_shared<Loader>(config_dir, preferred_dir);
   loader->base(id_or_path);
   for (const std::string& path : overlays) loader->overlay(path);
   read_ = std::move(loader);

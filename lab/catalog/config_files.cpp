@@ -9,13 +9,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The calibrated file of a GPU, or its documented one.
-std::string gpu_file(const std::string& name, const ConfigFolder& folder) {
-  const fs::path path = fs::path(folder.calibrated()) / (name + ".toml");
-  std::error_code error;
-  return fs::exists(path, error) ? path.string() : name;
-}
-
 }  // namespace
 
 const GpuFiles& ConfigFiles::kept(const std::string& name, const std::vector<std::string>& overlays,
@@ -23,9 +16,10 @@ const GpuFiles& ConfigFiles::kept(const std::string& name, const std::vector<std
   const GpuKey key{name, overlays, calibrated};
   auto known = gpus_.find(key);
   if (known == gpus_.end())
-    known =
-        gpus_.emplace(key, GpuFiles(calibrated ? gpu_file(name, folder_) : name, overlays, folder_.gpus()))
-            .first;
+    known = gpus_
+                .emplace(key, GpuFiles(name, overlays, folder_.gpus(),
+                                       calibrated ? folder_.calibrated() : std::string()))
+                .first;
   return known->second;
 }
 

@@ -29,8 +29,8 @@ class ConfigFiles {
   const ConfigFolder& folder() const { return folder_; }
 
   /// The GPU of an id or a file, with overlay files, and those of `sets` whose group is "gpu".
-  /// `calibrated`: with the fitted values of its calibrated file, where there is one. Throws InputError with
-  /// every problem found.
+  /// `calibrated`: with the fitted values of its calibrated file, or of the calibrated GPU that its file
+  /// extends. Throws InputError with every problem found.
   GpuConfig gpu(const std::string& name, const std::vector<std::string>& overlays,
                 std::span<const Assignment> sets, bool calibrated);
 

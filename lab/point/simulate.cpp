@@ -29,11 +29,12 @@ void time_work(PointResult& point, const RunPlan& plan) {
   const WorkTrace& trace = point.emulation->trace;
   const GpuConfig& gpu = *point.gpu;
   const auto* calibration = plan.engine == Engine::queue ? plan.calibration.get() : nullptr;
-  if (!calibration || !calibration->gpu_hashes.contains(gpu.id)) {
+  const std::string fitted_id = calibration ? cost_models::calibrated_id(*calibration, gpu) : std::string();
+  if (fitted_id.empty()) {
     point.timing = time_frame(trace, gpu, plan.engine, plan.timing);
     return;
   }
-  TimeSlopes slopes(gpu, cost_models::interval_keys(*calibration, gpu.id));
+  TimeSlopes slopes(gpu, cost_models::interval_keys(*calibration, fitted_id));
   point.timing = time_frame(trace, gpu, plan.engine, plan.timing, &slopes);
   cost_models::FrameInterval found = cost_models::frame_interval(
       *calibration, {point.timing.time_ns, slopes.ns()}, gpu, algos::technique_text(*point.technique));

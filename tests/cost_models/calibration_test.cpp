@@ -194,6 +194,25 @@ TEST_F(CalibrationTest, FramesCarryIntervalsThatWidenWithDistance) {
   EXPECT_EQ(interval_of(c, *trace, other, "t1").support, Support::uncalibrated);
 }
 
+// "extends" keeps the calibration of what it does not change: the interval is that of changed numbers.
+TEST_F(CalibrationTest, AGpuThatExtendsAFittedOneHasItsIntervalsFromIt) {
+  const Calibration c = make_calibration(experiment(), *validation_);
+  GpuConfig relative = calibrated_gpu(experiment().gpus.front(), c);
+  const std::string fitted = relative.id;
+  relative.id = "relative";
+  relative.shader_cores *= 2.0;
+  EXPECT_EQ(calibrated_id(c, relative), "");
+  relative.parents = {"somebody", fitted};
+  EXPECT_EQ(calibrated_id(c, relative), fitted);
+  const auto trace = random_trace(4711);
+  TimeSlopes slopes(relative, interval_keys(c, fitted));
+  const double time_ns = time_frame(*trace, relative, Engine::queue, {}, &slopes).time_ns;
+  const FrameInterval found = frame_interval(c, {time_ns, slopes.ns()}, relative, "t1");
+  EXPECT_EQ(found.support, Support::extrapolated);
+  ASSERT_TRUE(found.interval_ns);
+  EXPECT_LT((*found.interval_ns)[0], time_ns);
+}
+
 /// The calibration whose splits all have the quantile 1; the width of an interval is the logarithm over the
 /// narrowest one.
 class QuantileTest : public CalibrationTest {

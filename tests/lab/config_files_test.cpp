@@ -53,6 +53,17 @@ TEST(ConfigFiles, FittedNumbersAreTakenWhereAskedFor) {
   EXPECT_EQ(fitted.id, documented.id);
 }
 
+TEST(ConfigFiles, AGpuThatExtendsAFittedOneKeepsItsFittedNumbers) {
+  ConfigFiles files;
+  const GpuConfig fitted = files.gpu("gtx980", {}, {}, true), relative = files.gpu("gtx970", {}, {}, true),
+                  documented = files.gpu("gtx970", {}, {}, false);
+  EXPECT_EQ(relative.alu_efficiency_ratio, fitted.alu_efficiency_ratio);
+  EXPECT_NE(relative.alu_efficiency_ratio, documented.alu_efficiency_ratio);
+  EXPECT_EQ(relative.shader_cores, 13.0);
+  EXPECT_EQ(relative.id, "gtx970");
+  EXPECT_EQ(relative.parents.front(), "gtx980");
+}
+
 TEST(ConfigFiles, ReadAFileOnce) {
   const fs::path path = fs::path(::testing::TempDir()) / "hwsim_read_once.toml";
   std::ofstream(path)
