@@ -1,8 +1,10 @@
 // Writes what the accuracy test reads: published.traces, the work of every run that a published row stands
 // for, and fold_optima.csv, where each fit of a validation ends. Emulates what the cache does not have;
 // minutes.
-//   keep_traces FOLDER [--jobs=N]
-// Before it writes, it checks that predictions from the file are those from the traces, bit by bit.
+//   keep_traces [FOLDER] [--scenes=SCENES] [--jobs=N]
+// With SCENES, a folder of scene files, also configs/external/work.traces, the work of the frames that
+// `hwsim validate --external` is about; without FOLDER that alone. Before it writes, it checks that
+// predictions from the file are those from the traces, bit by bit.
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -18,6 +20,7 @@
 #include "cost_models/predictor.h"
 #include "hwsim/base/byte_codec.h"
 #include "lab/environment.h"
+#include "lab/studies/external.h"
 #include "lab/studies/published_runs.h"
 
 namespace hwsim::benchmarks {
@@ -88,19 +91,40 @@ int keep(const fs::path& folder, int jobs) {
   return 0;
 }
 
+int keep_external(const std::string& scenes, int jobs) {
+  Printer printer;
+  lab::LabOptions options = lab::options_of_environment();
+  options.jobs = jobs;
+  lab::Session session(options, printer);
+  KeptTraces kept;
+  kept.sources = algos::source_digest();
+  lab::validate_external(cost_models::keeping(lab::external_traces(scenes, session), kept), session);
+  const std::vector<std::uint8_t> bytes = cost_models::encode_kept(kept);
+  write(fs::path(session.files().folder().external()) / "work.traces",
+        std::string(bytes.begin(), bytes.end()));
+  return 0;
+}
+
 }  // namespace
 }  // namespace hwsim::benchmarks
 
 int main(int argc, char** argv) try {
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const char* folder = nullptr;
-  for (int i = 1; i < argc; ++i)
-    if (std::sscanf(argv[i], "--jobs=%d", &jobs) != 1) folder = argv[i];
-  if (folder == nullptr || jobs < 1) {
-    std::fprintf(stderr, "usage: keep_traces FOLDER [--jobs=N]\n");
+  std::string scenes;
+  constexpr std::string_view kScenes = "--scenes=";
+  for (int i = 1; i < argc; ++i) {
+    if (std::string_view(argv[i]).starts_with(kScenes))
+      scenes = argv[i] + kScenes.size();
+    else if (std::sscanf(argv[i], "--jobs=%d", &jobs) != 1)
+      folder = argv[i];
+  }
+  if ((folder == nullptr && scenes.empty()) || jobs < 1) {
+    std::fprintf(stderr, "usage: keep_traces [FOLDER] [--scenes=SCENES] [--jobs=N]\n");
     return 2;
   }
-  return hwsim::benchmarks::keep(folder, jobs);
+  const int status = folder == nullptr ? 0 : hwsim::benchmarks::keep(folder, jobs);
+  return status != 0 || scenes.empty() ? status : hwsim::benchmarks::keep_external(scenes, jobs);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "keep_traces: %s\n", error.what());
   return 1;

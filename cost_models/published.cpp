@@ -36,11 +36,13 @@ Diagnostic mapping_problem(const std::string& message, const std::string& path, 
   problem.place.line = line;
   problem.place.column = 1;
   problem.help =
-      "uses are fitted, derived, count, excluded and claim; columns are those of the tables, * is anything";
+      "uses are fitted, checked, derived, count, excluded and claim; columns are those of the tables, * is "
+      "anything";
   return problem;
 }
 
-constexpr NumberRange kPixels{1.0, 16384.0, true}, kRate{1.0, 64.0, true}, kRepeat{1.0, 1e6};
+constexpr NumberRange kPixels{1.0, 16384.0, true}, kRate{1.0, 64.0, true}, kRepeat{1.0, 1e6},
+    kPresentUs{0.0, 1e6};
 
 constexpr std::string_view kNotPrinted = "NA";
 
@@ -72,6 +74,10 @@ class Rules {
       return &file_.rows[i];
     }
     return nullptr;
+  }
+
+  bool has(std::string_view column) const {
+    return std::find(file_.header.begin(), file_.header.end(), column) != file_.header.end();
   }
 
   /// The text of a column in a line that `find` returned.
@@ -107,14 +113,16 @@ class Rules {
 };
 
 RowUse use_from_name(const std::string& name, const std::string& path) {
-  for (const RowUse use : {RowUse::fitted, RowUse::derived, RowUse::count, RowUse::excluded, RowUse::claim})
+  for (const RowUse use :
+       {RowUse::fitted, RowUse::checked, RowUse::derived, RowUse::count, RowUse::excluded, RowUse::claim})
     if (row_use_name(use) == name) return use;
   throw InputError(mapping_problem("`" + name + "` is no use of a row", path, 0));
 }
 
 std::string filled(std::string text, const PublishedRow& row) {
   for (const auto& [name, value] :
-       {std::pair{std::string("{msaa}"), row.msaa}, std::pair{std::string("{surfaces}"), row.surfaces}})
+       {std::pair{std::string("{msaa}"), row.msaa}, std::pair{std::string("{surfaces}"), row.surfaces},
+        std::pair{std::string("{lighting}"), row.lighting}})
     for (auto at = text.find(name); at != std::string::npos; at = text.find(name, at + value.size()))
       text.replace(at, name.size(), value);  // the value may hold the name again
   return text;
@@ -143,6 +151,7 @@ class Mapper {
         techniques_((folder / "techniques.csv").string(), 4),
         passes_((folder / "passes.csv").string(), 3) {
     techniques_.check_numbers("repeat", kRepeat, problems_);
+    if (passes_.has("present_us")) passes_.check_numbers("present_us", kPresentUs, problems_);
     if (!problems_.empty()) throw InputError(problems_);
   }
 
@@ -168,10 +177,11 @@ class Mapper {
     set_value(cell);
     const std::string missing = cell.use == RowUse::claim ? "" : set_run(cell);
     cell.has_run = cell.use != RowUse::claim && missing.empty();
-    const bool needs_value = cell.use == RowUse::fitted || cell.use == RowUse::count;
+    const bool needs_value =
+        cell.use == RowUse::fitted || cell.use == RowUse::checked || cell.use == RowUse::count;
     if (needs_value && row.printed == kNotPrinted)
       problems_.push_back({.code = "M002", .message = "row " + row.id() + " has no value to be fitted"});
-    if (!cell.has_run && (cell.use == RowUse::fitted || cell.use == RowUse::count))
+    if (!cell.has_run && needs_value)
       problems_.push_back(
           {.code = "M002", .message = "row " + row.id() + " is mapped to no run: " + missing});
     return cell;
@@ -200,7 +210,7 @@ class Mapper {
     RunSpec& run = cell.run;
     run.scene = scenes_.text(*scene, "stand_in");
     run.camera = scenes_.text(*scene, "camera");
-    run.settings = scenes_.text(*scene, "settings");
+    run.settings = filled(scenes_.text(*scene, "settings"), row);
     run.unlit = scenes_.text(*scene, "unlit");
     run.technique = filled(techniques_.text(*technique, "template"), row);
     cell.repeat = techniques_.number(*technique, "repeat");
@@ -213,6 +223,7 @@ class Mapper {
     run.height_px = static_cast<int>(table_number(row.resolution.substr(x + 1)).value());
     cell.scene_group = run.scene;
     cell.passes = passes_.text(*pass, "trace_passes");
+    if (passes_.has("present_us")) cell.present_us = passes_.number(*pass, "present_us");
     cell.rate = table_number(row.msaa).value_or(1.0);
     return {};
   }
@@ -291,6 +302,8 @@ std::string_view row_use_name(RowUse use) {
   switch (use) {
     case RowUse::fitted:
       return "fitted";
+    case RowUse::checked:
+      return "checked";
     case RowUse::derived:
       return "derived";
     case RowUse::count:

@@ -42,6 +42,7 @@ RunSpec without_lights(const RunSpec& run);
 /// What is done with a row.
 enum class RowUse {
   fitted,    ///< a time that the fit and the error figures use
+  checked,   ///< another renderer's time: predicted and compared, never fitted
   derived,   ///< follows from fitted rows (a sum, a ratio, printed twice): predicted and shown only
   count,     ///< shaded samples or memory: compared with the run's own counts
   excluded,  ///< contradicted by its own paper, or not a number
@@ -59,9 +60,10 @@ struct Cell {
   RunSpec run;             ///< meaningful where has_run
   bool has_run = false;
   std::string scene_group;  ///< what shares a scene's load: the stand-in, all its views and lights
-  std::string passes;   ///< trace passes that count: names and "prefix*", "!name" takes away, blanks between
-  double repeat = 1.0;  ///< times that the paper's program ran these passes for one frame
-  double rate = 1.0;    ///< samples a pixel of the row, for rate extrapolation
+  std::string passes;  ///< trace passes that count: names and "prefix*", "!name" takes away, blanks between
+  double present_us = 0.0;  ///< what the row's frame contains beside them
+  double repeat = 1.0;      ///< times that the paper's program ran these passes for one frame
+  double rate = 1.0;        ///< samples a pixel of the row, for rate extrapolation
 };
 
 /// Rows of every table, in the order of files and lines. Throws InputError for damaged files, and M010 for

@@ -247,6 +247,10 @@ FittedModel Lab::fit(const std::vector<std::string>& papers, int starts) {
   return fit_and_validate(std::move(experiment), options, session_->observer());
 }
 
+ExternalValidation Lab::validate_external(const std::string& scenes_folder) {
+  return lab::validate_external(external_traces(scenes_folder, *session_), *session_);
+}
+
 std::vector<SelfCheck> Lab::check_itself() { return lab::check_itself(*session_); }
 
 }  // namespace hwsim::lab

@@ -12,6 +12,7 @@
 #include "lab/results/result.h"
 #include "lab/studies/comparison.h"
 #include "lab/studies/explanation.h"
+#include "lab/studies/external.h"
 #include "lab/studies/kept_frame.h"
 #include "lab/studies/ranking.h"
 #include "lab/studies/reproduction.h"
@@ -99,6 +100,10 @@ class Lab {
   /// The same from several random starts, for write_calibration. Throws InputError M004 and M005 when there
   /// are more parameters than the published times can tell.
   FittedModel fit(const std::vector<std::string>& papers = {}, int starts = 10);
+
+  /// Errors on other renderers' times, which no fit sees. `scenes_folder`: where the scenes are that their
+  /// frames are emulated from; empty: from kept work.
+  ExternalValidation validate_external(const std::string& scenes_folder = {});
 
   /// Whether hwsim works here: its files, its modules, its cache, a small simulation.
   std::vector<SelfCheck> check_itself();

@@ -277,6 +277,13 @@ void Parser::add_calibration() {
   add_papers(fitter, fit);
   CLI::App& validator = add(app, "validate", kHelpValidate, [this] { return Command(validate); });
   add_papers(validator, validate);
+  CLI::Option* external = validator.add_flag("--external", validate.external,
+                                             "Other renderers' times (configs/external), which no fit sees");
+  validator
+      .add_option("--scenes", validate.scenes,
+                  "Folder of scene files: emulates their frames anew, from kept work without it")
+      ->needs(external)
+      ->type_name("DIR");
   CLI::App& reproducer = add(app, "reproduce", kHelpReproduce, [this] { return Command(reproduce); });
   reproducer.add_option("PAPER", reproduce.paper, "As the published tables call it: sss, sbaa, ...")
       ->required()

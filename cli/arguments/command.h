@@ -156,7 +156,10 @@ struct FitArguments {
   int starts = 10;
   bool dry_run = false;
 };
-struct ValidateArguments : FitArguments {};
+struct ValidateArguments : FitArguments {
+  bool external = false;
+  std::string scenes;  ///< folder of scene files; empty: kept work
+};
 
 struct ReproduceArguments {
   CommonArguments common;

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <map>
+
 #include "cli/commands/commands.h"
 #include "cli/commands/lab_options.h"
 #include "cli/terminal/answer.h"
 #include "cost_models/accuracy.h"
+#include "lab/studies/external.h"
 #include "lab/studies/published_runs.h"
 
 namespace hwsim::cli {
@@ -19,10 +22,34 @@ std::string counts_text(const lab::Validation& validation) {
       validation.memory.cells, validation.parameters, validation.fitted_values);
 }
 
+std::string not_run_text(const lab::ExternalValidation& validation) {
+  std::map<std::string, std::size_t> rows;
+  for (const lab::UnpredictedRow& row : validation.not_run) ++rows[row.reason];
+  std::string text;
+  for (const auto& [reason, count] : rows) text += fmt::format("\n{} rows not run: {}\n", count, reason);
+  return text;
+}
+
+ExitStatus validate_external(const ValidateArguments& options, Lab& lab) {
+  if (options.dry_run) {
+    print({.table = plan_table(lab::external_cells(lab.catalog().folder()))}, options.common);
+    return ExitStatus::done;
+  }
+  const lab::ExternalValidation validation = lab.validate_external(options.scenes);
+  const nlohmann::ordered_json json = to_json(validation);
+  print({.table = external_errors_table(validation),
+         .footing = "\n" + to_text(external_ratios_table(validation)) + "\n" +
+                    to_text(external_rows_table(validation)) + not_run_text(validation),
+         .json = &json},
+        options.common);
+  return ExitStatus::done;
+}
+
 }  // namespace
 
 ExitStatus validate(const ValidateArguments& options, Context& context) {
   Lab lab(lab_options(options.common, context.log));
+  if (options.external) return validate_external(options, lab);
   const ConfigFolder& folder = lab.catalog().folder();
   if (options.dry_run) {
     print({.table = plan_table(published_cells(options.papers, folder))}, options.common);

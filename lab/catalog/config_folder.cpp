@@ -39,6 +39,7 @@ std::string ConfigFolder::path() const {
 
 std::string ConfigFolder::gpus() const { return below(path(), "gpus"); }
 std::string ConfigFolder::published() const { return below(path(), "published"); }
+std::string ConfigFolder::external() const { return below(path(), "external"); }
 std::string ConfigFolder::calibration() const { return below(path(), "calibration"); }
 std::string ConfigFolder::calibrated() const { return below(path(), "calibrated"); }
 

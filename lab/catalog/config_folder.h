@@ -15,6 +15,7 @@ class ConfigFolder {
   std::string path() const;
   std::string gpus() const;         ///< a file a GPU
   std::string published() const;    ///< the papers' tables
+  std::string external() const;     ///< other renderers' times, never fitted
   std::string calibration() const;  ///< parameters of the fit, and stated accuracies
   std::string calibrated() const;   ///< what a fit left behind
 
