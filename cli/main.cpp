@@ -9,6 +9,7 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <set>
 #include <system_error>
 
 #include "cli/arguments/arguments.h"
@@ -87,15 +88,21 @@ Diagnostic file_problem(const std::filesystem::filesystem_error& error) {
   return d;
 }
 
-/// Files that cannot be written are told before the work, not after it.
+/// Files that cannot or must not be written are told before the work, not after it.
 void check_places(const CommonArguments& common) {
   std::error_code error;
+  std::set<std::string> names;
   for (const FormatRequest& format : common.formats) {
     const std::filesystem::path file = format.file, folder = file.parent_path();
     if (!file.empty() && !folder.empty() && !std::filesystem::is_directory(folder, error))
       fail("U010", "cannot write `" + format.file + "`: there is no folder `" + folder.string() + "`");
     if (!file.empty() && std::filesystem::is_directory(file, error))
       fail("U010", "cannot write `" + format.file + "`: it is a folder");
+    if (!file.empty() && !names.insert(format.file).second)
+      fail_usage("U003", "two answers go to the file `" + format.file + "`", "", "a file for each --format");
+    if (!file.empty() && !common.force && std::filesystem::is_regular_file(file, error))
+      fail("U013", "`" + format.file + "` exists and is not overwritten", "",
+           "another file, or --force to replace it");
   }
 }
 

@@ -258,6 +258,9 @@ void check_numbers(const PublishedRow& row, const CsvFile& file, std::size_t at,
     problems.push_back(number_problem(row.resolution, "resolution", "WIDTHxHEIGHT, or nothing", file, at));
   if (!row.msaa.empty() && !table_number(row.msaa, kRate))
     problems.push_back(number_problem(row.msaa, "msaa", range_text(kRate) + ", or nothing", file, at));
+  if (!row.surfaces.empty() && !table_number(row.surfaces, kRate))
+    problems.push_back(
+        number_problem(row.surfaces, "surfaces_or_aggregates", range_text(kRate) + ", or nothing", file, at));
 }
 
 std::vector<std::string> words(const std::string& text) {

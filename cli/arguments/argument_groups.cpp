@@ -49,6 +49,11 @@ void add_common(CLI::App& app, CommonArguments& common) {
           "Shape of the answer; FORMAT=FILE writes it to a file (repeatable)")
       ->allow_extra_args(false)
       ->type_name("table|csv|json|md");
+  // Commands that write results have the flag already: it stands for these files, too.
+  if (CLI::Option* force = app.get_option_no_throw("--force"))
+    force->each([&common](const std::string&) { common.force = true; });
+  else
+    group->add_flag("--force", common.force, "Replace files of --format that exist");
   group->add_flag_callback(
       "--json",
       [&common] {

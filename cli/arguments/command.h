@@ -25,6 +25,7 @@ struct FormatRequest {
 /// Flags of every command.
 struct CommonArguments {
   std::vector<FormatRequest> formats;  ///< empty: a table on standard output
+  bool force = false;                  ///< files of `formats` that exist are replaced
   int verbosity = 0;                   ///< -1 quiet, 1 verbose
   When color = When::automatic;
   When progress = When::automatic;

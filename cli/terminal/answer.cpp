@@ -73,7 +73,7 @@ void print(const Answer& answer, const CommonArguments& options) {
     if (request.file.empty())
       write_output(text);
     else
-      lab::write_file(request.file, text);
+      lab::write_answer(request.file, text);
   }
 }
 
@@ -87,7 +87,7 @@ void print_rows(const lab::RowSource& rows, const CommonArguments& options) {
       write_output(text);
       text.clear();
     });
-    request.file.empty() ? write_output(text) : lab::write_file(request.file, text);
+    request.file.empty() ? write_output(text) : lab::write_answer(request.file, text);
   }
 }
 

@@ -4,6 +4,8 @@
 
 #include <csignal>
 
+#include "lab/results/folder_exchange.h"
+
 namespace hwsim::cli {
 
 namespace fs = std::filesystem;
@@ -42,9 +44,7 @@ void InterruptGuard::wait() {
   sigwait(&set, &signal);
   if (signal == SIGUSR2) return;
   const std::lock_guard lock(mutex_);
-  std::error_code ignored;
-  // Other threads may be creating files in it: two attempts, then the name still says that it is partial.
-  for (int attempt = 0; attempt < 2 && !folder_.empty(); ++attempt) fs::remove_all(folder_, ignored);
+  if (!folder_.empty()) lab::remove_unfinished(folder_);
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, message_.data(), message_.size());
   ::_exit(128 + signal);
 }

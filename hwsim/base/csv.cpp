@@ -1,6 +1,7 @@
 #include "hwsim/base/csv.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -81,6 +82,9 @@ CsvFile parse_csv(std::string_view text, const std::string& path) {
 }
 
 CsvFile read_csv(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    fail("U011", "`" + path + "` is no file", path);  // a pipe would be waited for
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
   if (in) text << in.rdbuf();

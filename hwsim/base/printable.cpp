@@ -36,7 +36,7 @@ bool is_control(std::uint32_t code) { return code < 0x20 || (code >= 0x7f && cod
 /// Line and paragraph separators, and what turns the direction of writing.
 bool is_hidden(std::uint32_t code) {
   return code == 0x2028 || code == 0x2029 || code == 0x200e || code == 0x200f || code == 0x061c ||
-         (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+         code == 0xfeff || (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
 }
 
 std::string escape(std::uint32_t code) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <fstream>
 #include <vector>
 
 #include "hwsim/base/content_hash.h"
@@ -21,6 +22,21 @@ constexpr std::size_t kMaxTextBytes = std::size_t{64} << 20;  // far more than a
 void write_file(const std::string& path, std::string_view text) {
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
   pipeline::write_file_atomically(path, "U010", {bytes, text.size()});
+}
+
+void write_answer(const std::string& path, std::string_view text) {
+  std::error_code error;
+  const fs::file_status there = fs::status(path, error);
+  const bool takes_text = fs::is_fifo(there) || fs::is_character_file(there) || fs::is_socket(there);
+  if (!takes_text) {
+    const fs::path place = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : fs::path(path);
+    return write_file(error ? path : place.string(), text);
+  }
+  std::ofstream out(path, std::ios::binary);
+  out << text << std::flush;
+  if (!out)
+    throw InputError(problem("U010", "cannot write to `" + path + "`", "", "a file, or a pipe that is read"),
+                     ExitStatus::run_failed);
 }
 
 std::string read_file(const std::string& path) {

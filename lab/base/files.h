@@ -9,6 +9,10 @@ namespace hwsim::lab {
 /// Written beside the target and renamed, so that a file that exists is complete. Throws InputError U010.
 void write_file(const std::string& path, std::string_view text);
 
+/// Writes where somebody asked for it: a link's target is replaced, a pipe or a device gets the text itself.
+/// Throws InputError U010.
+void write_answer(const std::string& path, std::string_view text);
+
 /// Throws InputError U011 when it cannot be read.
 std::string read_file(const std::string& path);
 

@@ -9,8 +9,11 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "hwsim/base/diagnostics.h"
+#include "lab/base/files.h"
 #include "pipeline/base/file_descriptor.h"
 
 namespace hwsim::lab {
@@ -53,7 +56,7 @@ bool is_abandoned(const fs::path& folder, FileDescriptor& lock) {
   if (!lock.is_open() || ::fstat(lock.get(), &status) != 0 || status.st_uid != ::geteuid() || !lock.lock())
     return false;
   std::error_code error;
-  return fs::exists(folder / kUnfinishedMark, error) || fs::exists(folder / kManifest, error) ||
+  return fs::exists(folder / kUnfinishedMark, error) || is_of_hwsim(folder) ||
          (fs::is_empty(folder, error) && is_gone(folder));  // a living run is about to lock and mark it
 }
 
@@ -80,6 +83,17 @@ std::vector<fs::path> entries_of(const fs::path& folder) {
 }
 
 }  // namespace
+
+bool is_of_hwsim(const fs::path& folder) try {
+  const auto json = nlohmann::json::parse(read_file((folder / kManifest).string()), nullptr, false);
+  if (!json.is_object()) return false;
+  const auto written_by = json.find("written_by");
+  if (written_by != json.end())
+    return written_by->is_string() && written_by->get<std::string>().starts_with("hwsim");
+  return json.contains("model_version") && json.contains("input_hashes") && json.contains("points");
+} catch (const InputError&) {
+  return false;
+}
 
 fs::path partial_name(const fs::path& place) { return beside(place, kPartial); }
 
@@ -108,6 +122,13 @@ std::error_code remove_results(const fs::path& folder) {
     if (entry.filename() != kUnfinishedMark && entry.filename() != kManifest) fs::remove_all(entry, error);
   fs::remove_all(folder, error);
   return error;
+}
+
+void remove_unfinished(const fs::path& partial) {
+  const fs::path aside = beside(partial, kPartial);
+  std::error_code error;
+  fs::rename(partial, aside, error);
+  remove_results(error ? partial : aside);
 }
 
 std::size_t clear_abandoned(const fs::path& parent) {

@@ -21,9 +21,16 @@ std::error_code exchange_folders(const std::filesystem::path& fresh, const std::
 /// back where that fails.
 std::error_code exchange_in_steps(const std::filesystem::path& fresh, const std::filesystem::path& place);
 
+/// Whether the folder holds a manifest.json that hwsim wrote: other programs have files of this name, too.
+bool is_of_hwsim(const std::filesystem::path& folder);
+
 /// Removes a folder of results; what shows whose it is goes last, so that a removal that is cut short can be
 /// finished.
 std::error_code remove_results(const std::filesystem::path& folder);
+
+/// Removes the unfinished folder of this process while other threads may write into it: under another
+/// unfinished name nobody finds it any more.
+void remove_unfinished(const std::filesystem::path& partial);
 
 /// Removes unfinished folders below `parent` whose process is gone, and brings back a result that had stepped
 /// aside and that nothing replaced. Only what hwsim provably made is touched: name, owner, and mark or

@@ -60,6 +60,26 @@ NamedValues<T> named_from_json(const Json& json) {
   return values;
 }
 
+/// A quantity that no run can have below 0. Throws nlohmann::json::exception.
+double amount(const Json& json) {
+  const double value = json.get<double>();
+  if (!(value >= 0.0 && value <= 1e300))
+    throw Json::type_error::create(302, "a quantity is below 0 or without an end", &json);
+  return value;
+}
+
+std::uint64_t count(const Json& json) {
+  if (!json.is_number_unsigned()) throw Json::type_error::create(302, "a count is no whole number", &json);
+  return json.get<std::uint64_t>();
+}
+
+template <class T>
+NamedValues<T> named_from_json(const Json& json, T (*read)(const Json&)) {
+  NamedValues<T> values;
+  for (const auto& [name, value] : json.items()) values.emplace_back(name, read(value));
+  return values;
+}
+
 Json interval_json(const Interval& interval) {
   return interval ? Json{(*interval)[0], (*interval)[1]} : Json(nullptr);
 }
@@ -82,11 +102,11 @@ Json pass_json(const PassResult& pass) {
 PassResult pass_from_json(const Json& json) {
   return {.name = json.at("name").get<std::string>(),
           .kind = json.value("kind", ""),
-          .time_ms = json.at("time_ms").get<double>(),
+          .time_ms = amount(json.at("time_ms")),
           .limiter = json.at("limiter").get<std::string>(),
-          .units = named_from_json<double>(json.value("units", Json::object())),
-          .bytes = named_from_json<double>(json.at("bytes")),
-          .counters = named_from_json<std::uint64_t>(json.at("counters"))};
+          .units = named_from_json<double>(json.value("units", Json::object()), amount),
+          .bytes = named_from_json<double>(json.at("bytes"), amount),
+          .counters = named_from_json<std::uint64_t>(json.at("counters"), count)};
 }
 
 Json sources_json(const cost_models::ErrorSources& sources) {
@@ -107,14 +127,14 @@ Json frame_json(const FrameResult& frame) {
 }
 
 FrameResult frame_from_json(const Json& json) {
-  return {.time_ms = json.at("time_ms").get<double>(),
+  return {.time_ms = amount(json.at("time_ms")),
           .interval_ms = interval_from_json(json.value("interval_ms", Json())),
           .support = json.value("support", ""),
           .error_sources = sources_from_json(json.value("error_sources", Json::object())),
-          .memory_mib = json.at("memory_mib").get<double>(),
+          .memory_mib = amount(json.at("memory_mib")),
           .allocated_mib = json.value("allocated_mib", 0.0),
-          .dram_mb = json.at("dram_mb").get<double>(),
-          .shaded_samples = json.at("shaded_samples").get<std::uint64_t>()};
+          .dram_mb = amount(json.at("dram_mb")),
+          .shaded_samples = count(json.at("shaded_samples"))};
 }
 
 Json image_json(const std::optional<pipeline::ImageError>& error) {

@@ -34,7 +34,7 @@ fs::path default_place(const std::string& id_source) {
 
 /// --force deletes: only folders that hwsim wrote, or empty ones.
 bool may_be_replaced(const fs::path& place) {
-  return fs::is_directory(place) && (fs::is_empty(place) || fs::exists(place / "manifest.json"));
+  return fs::is_directory(place) && (fs::is_empty(place) || is_of_hwsim(place));
 }
 
 void check_free(const fs::path& place, bool force) {

@@ -19,10 +19,21 @@ constexpr std::chrono::milliseconds kPause{10};
 constexpr int kBusyMs =
     60'000;  // others hold the lock for a fraction of a second each, on a busy machine longer
 
+/// A database of a stranger runs no code of its own, and none of its values takes much memory.
+void distrust(sqlite3* handle) {
+  constexpr int kLongestValue = 64 << 20;
+  sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, kLongestValue);
+  for (const int what :
+       {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER, SQLITE_DBCONFIG_ENABLE_VIEW})
+    sqlite3_db_config(handle, what, 0, nullptr);
+}
+
 sqlite3* open(const std::string& path, int flags) {
   sqlite3* handle = nullptr;
-  if (sqlite3_open_v2(path.c_str(), &handle, flags, nullptr) == SQLITE_OK)
+  if (sqlite3_open_v2(path.c_str(), &handle, flags, nullptr) == SQLITE_OK) {
     sqlite3_busy_timeout(handle, kBusyMs);
+    distrust(handle);
+  }
   return handle;  // with the error inside, if there was one
 }
 
@@ -67,8 +78,8 @@ sqlite3* open(const std::string& path, Database::Mode mode) {
 
 }  // namespace
 
-Database::Database(const std::string& path, Mode mode)
-    : path_(path), handle_(open(path, mode), sqlite3_close) {
+Database::Database(const std::string& path, Mode mode, const std::string& shown)
+    : path_(shown.empty() ? path : shown), handle_(open(path, mode), sqlite3_close) {
   require(sqlite3_errcode(handle_.get()));
 }
 
@@ -77,7 +88,7 @@ void Database::fail() const {
   const bool out_of_space = code == SQLITE_FULL || code == SQLITE_IOERR;
   throw InputError(
       problem("U021", "the database `" + path_ + "`: " + sqlite3_errmsg(handle_.get()), "",
-              out_of_space ? "a disk with space; the finished points are in the database"
+              out_of_space ? "a disk with space; points that were finished are kept"
                            : "a database that `hwsim sweep` wrote, in a folder that can be written"),
       out_of_space ? ExitStatus::run_failed : ExitStatus::invalid_input);
 }

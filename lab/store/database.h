@@ -19,7 +19,8 @@ class Database {
     write,
     look  ///< the file and its folder may be read-only; nothing is written
   };
-  Database(const std::string& path, Mode mode);
+  /// `shown`: the name in messages, where it is another one.
+  Database(const std::string& path, Mode mode, const std::string& shown = {});
 
   void execute(const std::string& sql);
   bool try_execute(const std::string& sql);  ///< false where it failed, without an error

@@ -176,6 +176,7 @@ SweepSummary sweep_summary_from_json(const nlohmann::ordered_json& json) {
 
 SweepSummary run_sweep(const SweepPlan& plan, const SweepJob& job, Session& session) {
   SweepSummary summary{.database = job.database};
+  for (const std::string& other : job.merge) open_sweep(other, SweepAccess::look);  // before one is made
   {
     SweepStore store(job.database, access_of(job, plan.size() > 0));
     for (const std::string& other : job.merge)

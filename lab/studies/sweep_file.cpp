@@ -12,6 +12,7 @@
 #include <fstream>
 #include <optional>
 #include <thread>
+#include <vector>
 
 #include "lab/base/messages.h"
 #include "pipeline/base/file_io.h"
@@ -62,6 +63,21 @@ std::optional<std::uint32_t> version_in_header(const std::string& path) {
   return is_sweep ? std::optional(word(kUserVersionAt)) : std::nullopt;
 }
 
+/// What the database consists of, as SQLite keeps it: texts of CREATE.
+std::vector<std::string> parts_of(Database& database) {
+  std::vector<std::string> parts;
+  Database::Statement select(database, "SELECT type, name, sql FROM sqlite_master ORDER BY type, name");
+  while (select.step()) parts.push_back(select.text(0) + " " + select.text(1) + " " + select.text(2));
+  return parts;
+}
+
+/// The tables of a sweep and nothing else: neither triggers and views nor columns that compute themselves.
+bool is_made_as_here(Database& database) {
+  Database made(":memory:", Database::Mode::create);
+  made.execute(kSchema);
+  return parts_of(database) == parts_of(made);
+}
+
 bool has_tables(Database& database) {
   Database::Statement tables(database,
                              "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN "
@@ -75,23 +91,33 @@ void write_schema(Database& database) {
       fmt::format("PRAGMA application_id={}; PRAGMA user_version={}", kApplicationId, kSchemaVersion));
 }
 
+/// A file beside the database that goes with its owner, whatever happens.
+struct Unfinished {
+  std::string name;
+  pipeline::FileDescriptor lock;
+  explicit Unfinished(const std::string& path) : lock(pipeline::open_unfinished(path, name)) {}
+  ~Unfinished() {
+    std::error_code ignored;
+    if (lock.is_open()) fs::remove(name, ignored);
+  }
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+};
+
 /// Appears under its name with all of its tables, or not at all; a file that another process made meanwhile
 /// stays. Returns whether this process made it.
 bool make(const std::string& path) {
-  std::string unfinished;
-  const pipeline::FileDescriptor lock = pipeline::open_unfinished(path, unfinished);
-  if (!lock.is_open()) refuse("the database `" + path + "` cannot be made: " + std::strerror(errno));
+  Unfinished file{path};
+  if (!file.lock.is_open()) refuse("the database `" + path + "` cannot be made: " + std::strerror(errno));
   {
-    Database database(unfinished, Database::Mode::write);
+    Database database(file.name, Database::Mode::write, path);
     database.execute("PRAGMA journal_mode=MEMORY");  // no journal that a killed process could leave
     Database::Transaction transaction(database);
     write_schema(database);
     transaction.commit();
   }
-  const bool linked = ::link(unfinished.c_str(), path.c_str()) == 0;
+  const bool linked = ::link(file.name.c_str(), path.c_str()) == 0;
   const int why = linked ? 0 : errno;
-  std::error_code ignored;
-  fs::remove(unfinished, ignored);
   if (!linked && why != EEXIST) refuse("the database `" + path + "` cannot be made: " + std::strerror(why));
   return linked;
 }
@@ -129,6 +155,7 @@ void require_header(const std::string& path, bool any_version) {
 Database open_sweep(const std::string& path, SweepAccess access) {
   std::error_code error;
   bool is_there = fs::exists(path, error);
+  if (error) refuse("the database `" + path + "` cannot be used: " + error.message());
   if (!is_there && access == SweepAccess::look)
     fail("U021", "there is no database `" + path + "`", "",
          "the name of a database that `hwsim sweep` wrote");
@@ -139,7 +166,8 @@ Database open_sweep(const std::string& path, SweepAccess access) {
   require_header(path, access == SweepAccess::replace);
   const bool looks = access == SweepAccess::look;
   Database database(path, looks ? Database::Mode::look : Database::Mode::write);
-  if (!has_tables(database)) refuse("`" + path + "` is no database of `hwsim sweep`");
+  const bool whole = access == SweepAccess::replace ? has_tables(database) : is_made_as_here(database);
+  if (!whole) refuse("`" + path + "` is no database of `hwsim sweep`");
   if (looks) return database;
   log_writes(database);
   database.execute("PRAGMA synchronous=NORMAL; PRAGMA foreign_keys=ON");

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hwsim/engines/timing.h"
 #include "lab/base/messages.h"
 #include "lab/request/request.h"
 
@@ -14,18 +15,25 @@ namespace hwsim::lab {
 namespace {
 
 constexpr double kMaxTimeMs = 1e12, kMaxMegabytes = 1e12, kMaxCount = 9e18;
+constexpr std::array kSupports = {Support::calibrated, Support::interpolated, Support::extrapolated,
+                                  Support::uncalibrated};
 constexpr std::array kStates = {"pending", "running", "interrupted", "done", "failed"};
+
+bool is_support(const std::string& name) {
+  return std::ranges::any_of(kSupports, [&](Support support) { return support_name(support) == name; });
+}
 
 /// One column of `point`, as the table shows it and as a row must have it.
 struct PointColumn {
-  enum class Type { text, state, count, real };
+  enum class Type { text, state, support, count, real };
   const char* name;
   const char* id;
   const char* title;
   Type type = Type::text;
-  double high = 0.0;  ///< the largest count or real; the smallest is 0
+  double high = 0.0;  ///< the largest count or real
   int decimals = 0;
   bool may_be_missing = false;
+  double low = 0.0;  ///< the smallest
 };
 
 using enum PointColumn::Type;
@@ -35,13 +43,13 @@ constexpr std::array kPointColumns = {
     PointColumn{"scene", "scene", "scene"},
     PointColumn{"technique", "technique", "technique"},
     PointColumn{"gpu", "gpu", "GPU"},
-    PointColumn{"width_px", "width_px", "width", count, kMaxSidePx},
-    PointColumn{"height_px", "height_px", "height", count, kMaxSidePx},
+    PointColumn{"width_px", "width_px", "width", count, kMaxSidePx, 0, false, 1.0},
+    PointColumn{"height_px", "height_px", "height", count, kMaxSidePx, 0, false, 1.0},
     PointColumn{"state", "state", "state", state},
     PointColumn{"time_ms", "time_ms", "ms", real, kMaxTimeMs, 4, true},
     PointColumn{"lo_ms", "lo_ms", "lo", real, kMaxTimeMs, 4, true},
     PointColumn{"hi_ms", "hi_ms", "hi", real, kMaxTimeMs, 4, true},
-    PointColumn{"support", "support", "support", text, 0, 0, true},
+    PointColumn{"support", "support", "support", support, 0, 0, true},
     PointColumn{"limiter", "limiter", "limiter", text, 0, 0, true},
     PointColumn{"dram_mb", "dram_mb", "DRAM MB", real, kMaxMegabytes, 2, true},
     PointColumn{"memory_mib", "memory_mib", "memory MiB", real, kMaxMegabytes, 1, true},
@@ -72,6 +80,10 @@ class PointReader {
       cells.push_back(cell(kPointColumns[i], static_cast<int>(i)));
     if (select_.text(kState) == "done" && std::holds_alternative<NotApplicable>(cells[kTime]))
       damaged("is done and has no `time_ms`");
+    const std::optional<double> low = select_.real(kTime + 1), high = select_.real(kTime + 2);
+    const double time = select_.real(kTime).value_or(0.0);
+    if (low.has_value() != high.has_value() || (low && !(*low <= time && time <= *high)))
+      damaged("has an interval that does not hold its `time_ms`");
     return cells;
   }
 
@@ -98,24 +110,26 @@ class PointReader {
   }
 
   TableCell cell(const PointColumn& column, int place) const {
-    const bool is_text = column.type == text || column.type == state;
+    const bool is_text = column.type == text || column.type == state || column.type == support;
     const bool is_number = select_.is_number(place);
     const double number = select_.real(place).value_or(0.0);
     const std::int64_t whole = select_.integer(place);
     const std::string value = select_.text(place);
     if (value.empty()) {
-      if (!is_text && !column.may_be_missing) damaged(fmt::format("has no `{}`", column.name));
+      if (column.type != text && !column.may_be_missing) damaged(fmt::format("has no `{}`", column.name));
       return NotApplicable{};
     }
     if (is_text) {
-      if (is_number || (column.type == state && std::ranges::find(kStates, value) == kStates.end()))
-        damaged(fmt::format("has `{}` {}, which no sweep writes", column.name, value));
+      const bool known = column.type == state     ? std::ranges::find(kStates, value) != kStates.end()
+                         : column.type == support ? is_support(value)
+                                                  : true;
+      if (is_number || !known) damaged(fmt::format("has `{}` {}, which no sweep writes", column.name, value));
       return value;
     }
-    if (!is_number || !(number >= 0.0 && number <= column.high) ||
+    if (!is_number || !(number >= column.low && number <= column.high) ||
         (column.type == count && number != std::floor(number)))
-      damaged(fmt::format("has `{}` {}, must be a {} from 0 to {}", column.name, value,
-                          column.type == count ? "whole number" : "number", column.high));
+      damaged(fmt::format("has `{}` {}, must be a {} from {} to {}", column.name, value,
+                          column.type == count ? "whole number" : "number", column.low, column.high));
     if (column.type == count) return static_cast<std::uint64_t>(whole);
     return Real{number, column.decimals};
   }

@@ -88,7 +88,8 @@ ExitStatus write_failure_status(int reason) {
 }
 
 std::vector<std::uint8_t> read_file(const std::string& path, const std::string& code, std::size_t max_bytes) {
-  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  // Without waiting: a pipe that nobody writes to is refused below.
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status {};
   if (file.get() < 0 || ::fstat(file.get(), &status) != 0)
     fail(code, "cannot read the file: " + reason(), path);

@@ -66,6 +66,9 @@ FilePlace locate_name(const fs::path& folder, const std::string& name) {
   std::error_code error;
   const fs::path root = fs::weakly_canonical(folder, error);
   if (error) return {"", "cannot be found: " + error.message()};
+  constexpr std::size_t kLongestComponent = 255;  // file systems in use have this limit
+  for (const fs::path& component : fs::path(name))
+    if (component.native().size() > kLongestComponent) return {"", "has a name longer than any file's"};
   const fs::path file = fs::weakly_canonical(root / name, error);
   if (error) return {"", "cannot be found: " + error.message()};
   if (!lies_below(root, file)) return {"", "lies outside of the scene's folder"};

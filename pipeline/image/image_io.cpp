@@ -16,6 +16,7 @@ namespace hwsim::pipeline {
 namespace {
 
 constexpr std::size_t kMaxFileBytes = std::size_t{2} << 30;
+constexpr std::size_t kMostScans = 256;  // every one goes over the whole picture; programs write about ten
 constexpr float kLargestHalf = 65504.0f;
 
 [[noreturn]] void fail(const std::string& code, const std::string& message, const std::string& file,
@@ -55,6 +56,7 @@ struct FloatTarget {
 
 [[noreturn]] void report(int status, const std::string& reason, const std::string& what) {
   const std::string tail = reason.empty() ? std::string() : ": " + reason;
+  if (status == kHwsimImageNoMemory) throw std::bad_alloc();
   if (status == kHwsimImageTooLarge)
     fail("I003", "the image is too large" + tail, what,
          "reduce it to at most " + std::to_string(kHwsimImageMaxExtentPx) + " pixels a side");
@@ -72,6 +74,16 @@ void check_format(std::span<const std::uint8_t> bytes, const std::string& what, 
     report(kHwsimImageDamaged, "bytes are missing or changed", what);
   if (format == ImageFormat::jpeg && !jpeg_is_complete(bytes))
     report(kHwsimImageDamaged, "its end is missing", what);
+  if (format == ImageFormat::exr) return;
+  const ImageSize size = image_size(bytes);
+  if (size.width == 0 || size.height == 0) report(kHwsimImageDamaged, "its size is zero", what);
+  if (size.width > kHwsimImageMaxExtentPx || size.height > kHwsimImageMaxExtentPx)
+    report(kHwsimImageTooLarge,
+           "it is " + std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels", what);
+  if (format == ImageFormat::png && !png_data_fits(bytes))
+    report(kHwsimImageDamaged, "it holds more than its size can use", what);
+  if (format == ImageFormat::jpeg && jpeg_scans(bytes) > kMostScans)
+    report(kHwsimImageDamaged, "it has more than " + std::to_string(kMostScans) + " scans", what);
 }
 
 template <class Target>
@@ -94,7 +106,9 @@ std::vector<std::uint8_t> encode(const char* format, const void* rgb, const Imag
   std::vector<std::uint8_t> file;
   std::array<char, 512> error{};
   const HwsimImageOutput output{&file, nullptr, &append_bytes, error.data(), error.size()};
-  if (image_module().encode(format, rgb, image.width, image.height, &output) != kHwsimImageOk)
+  const int status = image_module().encode(format, rgb, image.width, image.height, &output);
+  if (status == kHwsimImageNoMemory) throw std::bad_alloc();
+  if (status != kHwsimImageOk)
     fail("I005", std::string("cannot encode the image: ") + error.data(), path,
          "write it in the other format, .png or .exr");
   return file;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 
 namespace hwsim::pipeline {
 namespace {
@@ -59,6 +60,32 @@ ImageSize jpeg_size(std::span<const std::uint8_t> bytes) {
   return {};
 }
 
+/// Goes from marker to marker; the number of scans, none where the end-of-image marker is missing.
+std::optional<std::size_t> scans_to_the_end(std::span<const std::uint8_t> bytes) {
+  std::size_t at = 2, scans = 0;
+  bool in_scan = false;
+  while (at + 1 < bytes.size()) {
+    if (bytes[at] != 0xFF) {
+      if (!in_scan) return std::nullopt;
+      ++at;
+      continue;
+    }
+    const std::uint8_t marker = bytes[at + 1];
+    if (marker == kEndOfImage) return scans;
+    if (marker == 0xFF) {  // a fill byte
+      ++at;
+    } else if (has_no_payload(marker) || (in_scan && marker == 0x00)) {  // FF 00 is a stuffed FF of the scan
+      at += 2;
+    } else {
+      if (at + 3 >= bytes.size()) return std::nullopt;
+      at += 2 + (std::size_t{bytes[at + 2]} << 8 | bytes[at + 3]);
+      in_scan = marker == kStartOfScan;
+      scans += in_scan ? 1 : 0;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 ImageFormat image_format(std::span<const std::uint8_t> bytes) {
@@ -92,28 +119,23 @@ bool png_is_intact(std::span<const std::uint8_t> bytes) {
   return false;
 }
 
-bool jpeg_is_complete(std::span<const std::uint8_t> bytes) {
-  std::size_t at = 2;
-  bool in_scan = false;
-  while (at + 1 < bytes.size()) {
-    if (bytes[at] != 0xFF) {
-      if (!in_scan) return false;
-      ++at;
-      continue;
-    }
-    const std::uint8_t marker = bytes[at + 1];
-    if (marker == kEndOfImage) return true;
-    if (marker == 0xFF) {  // a fill byte
-      ++at;
-    } else if (has_no_payload(marker) || (in_scan && marker == 0x00)) {  // FF 00 is a stuffed FF of the scan
-      at += 2;
-    } else {
-      if (at + 3 >= bytes.size()) return false;
-      at += 2 + (std::size_t{bytes[at + 2]} << 8 | bytes[at + 3]);
-      in_scan = marker == kStartOfScan;
-    }
+bool png_data_fits(std::span<const std::uint8_t> bytes) {
+  constexpr std::size_t kFraming = 12, kSlack = std::size_t{64} << 10;
+  const ImageSize size = image_size(bytes);
+  constexpr std::size_t kMostBytesPerPixel = 8;  // four channels of 16 bits
+  const std::size_t most = 2 * (std::size_t{size.width} * kMostBytesPerPixel + 1) * size.height + kSlack;
+  std::size_t at = 8, data = 0;
+  while (at <= bytes.size() && bytes.size() - at >= kFraming) {
+    const std::size_t length = big_endian_32(bytes, at);
+    if (length > bytes.size() - at - kFraming) break;
+    if (starts_with<4>(bytes.subspan(at + 4), {'I', 'D', 'A', 'T'})) data += length;
+    at += kFraming + length;
   }
-  return false;
+  return data <= most;
 }
+
+bool jpeg_is_complete(std::span<const std::uint8_t> bytes) { return scans_to_the_end(bytes).has_value(); }
+
+std::size_t jpeg_scans(std::span<const std::uint8_t> bytes) { return scans_to_the_end(bytes).value_or(0); }
 
 }  // namespace hwsim::pipeline

@@ -1,5 +1,6 @@
 #pragma once
 // What an image file is, and whether all of it is there, before a library reads it.
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -19,6 +20,13 @@ ImageSize image_size(std::span<const std::uint8_t> bytes);
 /// Whether a PNG's chunks reach its end and every critical one has its checksum. libpng would print to
 /// stderr.
 bool png_is_intact(std::span<const std::uint8_t> bytes);
+
+/// Whether a PNG's compressed bytes are no more than twice what its pixels could be: deflate makes nothing
+/// longer, and what comes behind the last pixel is unpacked, too.
+bool png_data_fits(std::span<const std::uint8_t> bytes);
+
+/// Scans of a complete JPEG; 0 of others.
+std::size_t jpeg_scans(std::span<const std::uint8_t> bytes);
 
 /// Whether a JPEG's markers reach its end-of-image marker. libjpeg fills what is missing with gray and only
 /// warns.

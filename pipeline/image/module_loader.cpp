@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <new>
 #include <string>
 
 #include "hwsim/base/diagnostics.h"
@@ -19,6 +20,7 @@ const HwsimImageModule* open_module(const std::string& path, std::string& error)
   if (!library) {
     const char* reason = ::dlerror();
     error = reason ? reason : "unknown error";
+    if (error.find("failed to map segment") != std::string::npos) throw std::bad_alloc();
     return nullptr;
   }
   const auto* module = static_cast<const HwsimImageModule*>(::dlsym(library, "hwsim_image_module"));

@@ -28,6 +28,28 @@ TEST(List, FormatWritesToAFile) {
   EXPECT_EQ(place.read("gpus.csv").rfind("id,title", 0), 0u);
 }
 
+TEST(Formats, FileThatExistsIsReplacedByForceAlone) {
+  const Workplace place;
+  place.write("thesis.txt", "precious");
+  const Outcome refused = place.hwsim("list gpus --format csv=thesis.txt");
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_NE(refused.err.find("U013"), std::string::npos) << refused.err;
+  EXPECT_EQ(place.read("thesis.txt"), "precious");
+  EXPECT_EQ(place.hwsim("list gpus --format csv=thesis.txt --force").status, 0);
+  EXPECT_EQ(place.read("thesis.txt").rfind("id,title", 0), 0u);
+  EXPECT_EQ(place.hwsim("list gpus --format csv=x --format json=x").status, 2);
+}
+
+TEST(Formats, LinksAndPipesStayWhatTheyAre) {
+  const Workplace place;
+  place.write("target.csv", "old");
+  std::filesystem::create_symlink("target.csv", place / "link");
+  EXPECT_EQ(place.hwsim("list gpus --format csv=link --force").status, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(place / "link"));
+  EXPECT_EQ(place.read("target.csv").rfind("id,title", 0), 0u);
+  EXPECT_EQ(place.hwsim("list gpus --format csv=/dev/stdout").out.rfind("id,title", 0), 0u);
+}
+
 TEST(List, PublishedTablesAreReadByRfc4180) {
   const Workplace place;
   std::filesystem::create_directories(place / "configs/gpus");

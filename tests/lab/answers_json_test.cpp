@@ -45,6 +45,16 @@ TEST(AnswersJson, ResultWithoutANeededFieldIsRefused) {
   Json wrong = json;
   wrong["frame"]["time_ms"] = "fast";
   EXPECT_THROW(result_from_json(wrong), Json::exception);
+  for (const double value : {-5.0, -1e308, 0.5}) {
+    wrong = json;
+    wrong["passes"][0]["counters"]["raster.quads"] = value;
+    EXPECT_THROW(result_from_json(wrong), Json::exception) << value;
+  }
+  for (const double value : {-5.0, -1e308}) {
+    wrong = json;
+    wrong["passes"][0]["bytes"]["depth"] = value;
+    EXPECT_THROW(result_from_json(wrong), Json::exception) << value;
+  }
 }
 
 TEST(AnswersJson, RunOfOneAndOfSeveralPointsComesBack) {

@@ -6,8 +6,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <fstream>
 #include <functional>
+#include <thread>
 
 #include "hwsim/base/diagnostics.h"
 #include "lab/results/run_directory.h"
@@ -26,7 +28,7 @@ class FolderExchange : public ::testing::Test {
     const fs::path folder = bench.path(name);
     fs::create_directories(folder);
     std::ofstream(folder / "result.txt") << content;
-    std::ofstream(folder / "manifest.json") << "{}";
+    std::ofstream(folder / "manifest.json") << R"({"written_by": "hwsim fit"})";
     return folder;
   }
   static std::string content_of(const fs::path& folder) {
@@ -109,6 +111,36 @@ TEST_F(FolderExchange, ResultThatHadSteppedAsideComesBack) {
   make(".results.old-4712", "older");
   EXPECT_EQ(clear_abandoned(bench.path("")), 1u);
   EXPECT_EQ(content_of(bench.path("results")), "old") << "its place is taken: the older one goes";
+}
+
+// Web pages and browser extensions have a manifest.json, too.
+TEST_F(FolderExchange, ManifestOfAnotherProgramMakesNoFolderOfResults) {
+  for (const char* manifest : {R"({"name": "a page"})", "{}", "[]", "", R"({"written_by": "somebody"})"}) {
+    for (const char* name : {"results", ".results.partial-12", ".other.old-12"}) {
+      make(name, "precious");
+      std::ofstream(fs::path(bench.path(name)) / "manifest.json") << manifest;
+    }
+    EXPECT_THROW(RunDirectory(place(true), "id"), InputError) << manifest;
+    EXPECT_EQ(clear_abandoned(bench.path("")), 0u) << manifest;
+    for (const char* name : {"results", ".results.partial-12", ".other.old-12"})
+      EXPECT_EQ(content_of(bench.path(name)), "precious") << manifest;
+  }
+}
+
+TEST_F(FolderExchange, UnfinishedFolderGoesWhileAThreadWritesIntoIt) {
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    const fs::path folder = bench.path(".results.partial-4711");
+    fs::create_directories(folder);
+    std::ofstream(folder / kUnfinishedMark);
+    std::atomic<bool> ends{false};
+    std::thread writer([&] {
+      for (int i = 0; !ends; ++i) std::ofstream(folder / std::to_string(i)) << i;
+    });
+    remove_unfinished(folder);
+    ends = true;
+    writer.join();
+    EXPECT_EQ(entries(), 1u) << "the scene alone";
+  }
 }
 
 TEST_F(FolderExchange, FoldersOfOthersAndOfLivingRunsStay) {

@@ -145,6 +145,39 @@ TEST_F(SweepStoreTest, MergedPartsOfASweepEqualTheWhole) {
   EXPECT_EQ(to_csv(collected(merged.points())), to_csv(collected(whole.points())));
 }
 
+TEST_F(SweepStoreTest, DatabaseWithMoreThanASweepsTablesIsRefused) {
+  for (const char* sql :
+       {"CREATE TRIGGER t AFTER UPDATE ON point BEGIN SELECT 1; END", "CREATE VIEW v AS SELECT 1",
+        "ALTER TABLE point ADD COLUMN more TEXT AS (hex(zeroblob(300000000)))", "CREATE TABLE more (a)"}) {
+    make("a.db", {{"p1", 1e6}});
+    {
+      Database database(path("a.db"), Database::Mode::write);
+      database.execute(sql);
+    }
+    for (const SweepAccess access : {SweepAccess::look, SweepAccess::go_on})
+      EXPECT_EQ(code_of([&] { SweepStore(path("a.db"), access); }), "U021") << sql;
+    fs::remove(path("a.db"));
+  }
+}
+
+TEST_F(SweepStoreTest, RowsThatNoSweepWritesAreRefused) {
+  for (const char* change : {"width_px = 0", "lo_ms = 100.0, hi_ms = 200.0", "support = 'perfect'",
+                             "state = ''", "lo_ms = NULL, hi_ms = 1.0"}) {
+    make("a.db", {{"p1", 1e6}});
+    {
+      Database database(path("a.db"), Database::Mode::write);
+      database.execute(std::string("UPDATE point SET ") + change);
+    }
+    EXPECT_EQ(code_of([&] {
+                SweepStore store(path("a.db"), SweepAccess::look);
+                collected(store.points());
+              }),
+              "U021")
+        << change;
+    fs::remove(path("a.db"));
+  }
+}
+
 TEST_F(SweepStoreTest, MergeOfAFileThatIsNotThereIsRefused) {
   make("a.db", {{"p1", 1e6}});
   SweepStore a(path("a.db"), SweepAccess::go_on);

@@ -7,8 +7,10 @@
 #include <bit>
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace {
@@ -142,7 +144,7 @@ int decode(const std::uint8_t* bytes, std::size_t byte_count, int as_float, cons
     return fail(output, kHwsimImageFailed,
                 "none of its channels (" + channel_list(spec) + ") is R, G, B or Y");
   void* pixels = output.allocate(output.user, spec.width, spec.height);
-  if (!pixels) return fail(output, kHwsimImageFailed, "not enough memory");
+  if (!pixels) return fail(output, kHwsimImageNoMemory, "not enough memory");
   const bool done = by_name ? read_named(*input, spec, named, static_cast<float*>(pixels))
                     : as_float
                         ? read_rgba(*input, spec, OIIO::TypeDesc::FLOAT, 1.0f, static_cast<float*>(pixels))
@@ -177,6 +179,10 @@ int decode_guarded(const std::uint8_t* bytes, std::size_t byte_count, int as_flo
                    const HwsimImageOutput* output) {
   try {
     return decode(bytes, byte_count, as_float, *output);
+  } catch (const std::bad_alloc&) {
+    return fail(*output, kHwsimImageNoMemory, "not enough memory");
+  } catch (const std::system_error&) {
+    return fail(*output, kHwsimImageNoMemory, "the system gives no further thread");
   } catch (const std::exception& error) {
     return fail(*output, kHwsimImageDamaged, error.what());
   } catch (...) {
@@ -188,6 +194,10 @@ int encode_guarded(const char* format, const void* rgb, int width, int height,
                    const HwsimImageOutput* output) {
   try {
     return encode(format, rgb, width, height, *output);
+  } catch (const std::bad_alloc&) {
+    return fail(*output, kHwsimImageNoMemory, "not enough memory");
+  } catch (const std::system_error&) {
+    return fail(*output, kHwsimImageNoMemory, "the system gives no further thread");
   } catch (const std::exception& error) {
     return fail(*output, kHwsimImageFailed, error.what());
   } catch (...) {

@@ -13,7 +13,8 @@ enum HwsimImageStatus {
   kHwsimImageOk = 0,
   kHwsimImageDamaged = 1,
   kHwsimImageTooLarge = 2,
-  kHwsimImageFailed = 3
+  kHwsimImageFailed = 3,
+  kHwsimImageNoMemory = 4  ///< or no thread
 };
 
 /// Receives what a call produced. `allocate` is called at most once, and not when the call fails before its

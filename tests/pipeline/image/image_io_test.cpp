@@ -1,6 +1,7 @@
 #include "pipeline/image/image_io.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -113,6 +114,22 @@ TEST(DecodeImage, RejectsAbsurdSizes) {
     EXPECT_NE(std::string(error.what()).find("too short for the size that it claims"), std::string::npos);
   }
   EXPECT_EQ(decode_code(make_png({0, 1, 8, 0}, {0})), "I002");
+}
+
+// One byte in a million was enough for a second of unpacking.
+TEST(DecodeImage, RejectsDataThatItsSizeCannotUse) {
+  EXPECT_EQ(decode_code(make_png({4, 4, 8, 0}, Bytes(200'000, 7))), "I002");
+  Bytes scans = {0xFF, 0xD8};
+  for (int i = 0; i < 300; ++i) scans.insert(scans.end(), {0xFF, 0xDA, 0, 2, 7});
+  scans.insert(scans.end(), {0xFF, 0xD9});
+  EXPECT_EQ(jpeg_scans(scans), 300u);
+  EXPECT_EQ(jpeg_scans(testing::two_color_jpeg()), 1u);
+}
+
+TEST(DecodeImage, APipeIsNoFile) {
+  const std::string pipe = testing::scratch_folder("pipe") + "/x.png";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(read_image(pipe), InputError) << "it would be waited for";
 }
 
 TEST(JpegIsComplete, SkipsStuffedBytesAndThumbnails) {
