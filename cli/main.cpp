@@ -45,6 +45,7 @@ ExitStatus dispatch(const Command& command, Context& context) {
                                [&](const ExplainArguments& o) { return explain(o, context); },
                                [&](const RankArguments& o) { return rank(o, context); },
                                [&](const SweepArguments& o) { return sweep(o, context); },
+                               [&](const ReportArguments& o) { return report(o, context); },
                                [&](const ReferenceArguments& o) { return reference(o, context); },
                                [&](const ListArguments& o) { return list(o, context); },
                                [&](const ShowArguments& o) { return show_entry(o, context); },

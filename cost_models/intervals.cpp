@@ -153,4 +153,29 @@ std::optional<double> ratio_half_width(const Calibration& calibration, const Err
   return std::exp(interval_quantile(quantiles, support) * std::sqrt(variance));
 }
 
+IntervalModel interval_model(const Calibration& calibration) {
+  IntervalModel model{.residual_log_sd = calibration.residual_log_sd,
+                      .ratio_log_sd = calibration.ratio_log_sd,
+                      .covariance = calibration.covariance};
+  for (const Support support : {Support::calibrated, Support::interpolated, Support::extrapolated}) {
+    model.quantile90[support] = interval_quantile(calibration.quantile90, support);
+    model.ratio_quantile90[support] = interval_quantile(calibration.ratio_quantile90, support);
+  }
+  for (const CalibratedParameter& p : calibration.parameters) model.parameters.push_back(id_of(p));
+  return model;
+}
+
+std::vector<std::string> interval_parameters(const Calibration& calibration, const std::string& gpu) {
+  std::vector<std::string> ids;
+  for (const CalibratedParameter& p : calibration.parameters)
+    if (of_interval(calibration, p, gpu)) ids.push_back(id_of(p));
+  return ids;
+}
+
+Support support_of(const Calibration& calibration, const GpuConfig& gpu, const std::string& technique) {
+  const auto hash = calibration.gpu_hashes.find(gpu.id);
+  if (hash == calibration.gpu_hashes.end()) return Support::uncalibrated;
+  return support_of(calibration, gpu, hash->second, technique);
+}
+
 }  // namespace hwsim::cost_models

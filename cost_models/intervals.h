@@ -62,4 +62,21 @@ struct Likeness {
 std::optional<double> ratio_half_width(const Calibration& calibration, const ErrorSources& before,
                                        const ErrorSources& after, const Likeness& likeness);
 
+/// All that intervals are computed from, for who replays frames elsewhere (a report's page), as the functions
+/// above compute them.
+struct IntervalModel {
+  double residual_log_sd = 0.0, ratio_log_sd = 0.0;
+  std::map<Support, double> quantile90{}, ratio_quantile90{};
+  std::vector<std::string> parameters{};  ///< ids
+  std::vector<double> covariance{};       ///< that of their logarithms, row by row
+};
+IntervalModel interval_model(const Calibration& calibration);
+
+/// The parameters that a frame's time on a GPU depends on, by the GPU's keys: in the order of
+/// interval_keys().
+std::vector<std::string> interval_parameters(const Calibration& calibration, const std::string& gpu);
+
+/// How near a frame is to what was fitted; uncalibrated on a GPU that was not.
+Support support_of(const Calibration& calibration, const GpuConfig& gpu, const std::string& technique);
+
 }  // namespace hwsim::cost_models

@@ -42,6 +42,7 @@ std::uint64_t cache_limit_bytes() {
 
 LabOptions options_of_environment() {
   return {.config_folder = variable("HWSIM_CONFIG_DIR"),
+          .page_folder = variable("HWSIM_PAGE_DIR"),
           .cache_folder = cache_folder(),
           .cache_limit_bytes = cache_limit_bytes()};
 }

@@ -4,7 +4,10 @@
 
 #include <chrono>
 
+#include "lab/base/files.h"
 #include "lab/base/messages.h"
+#include "lab/report/gather.h"
+#include "lab/report/page.h"
 #include "lab/request/image_input.h"
 #include "lab/studies/published_runs.h"
 
@@ -80,6 +83,7 @@ std::string label_of(const Result& result, const std::string& variation, bool se
 
 Lab::Lab(const LabOptions& options)
     : catalog_(ConfigFolder(options.config_folder)),
+      page_folder_(options.page_folder),
       silence_(std::make_unique<Observer>()),
       session_(std::make_unique<Session>(options, options.observer ? *options.observer : *silence_)) {}
 
@@ -249,6 +253,19 @@ FittedModel Lab::fit(const std::vector<std::string>& papers, int starts) {
 
 ExternalValidation Lab::validate_external(const std::string& scenes_folder) {
   return lab::validate_external(external_traces(scenes_folder, *session_), *session_);
+}
+
+Report Lab::report(const std::vector<std::string>& inputs) { return gather_report(inputs, *session_); }
+
+Report Lab::report(const Request& request, const std::vector<Variation>& variations,
+                   const Comparison& comparison) {
+  return gather_report(request, variations, comparison, *session_);
+}
+
+void Lab::write_report(const Report& report, const std::string& file) const {
+  const PageParts parts = read_page_parts(page_folder_);
+  for (const std::string& missing : parts.missing) session_->observer().say("the report lacks " + missing);
+  write_file(file, page_of(report, parts));
 }
 
 std::vector<SelfCheck> Lab::check_itself() { return lab::check_itself(*session_); }

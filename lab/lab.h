@@ -9,6 +9,7 @@
 #include "lab/catalog/catalog.h"
 #include "lab/environment.h"
 #include "lab/point/run_sink.h"
+#include "lab/report/report.h"
 #include "lab/results/result.h"
 #include "lab/studies/comparison.h"
 #include "lab/studies/explanation.h"
@@ -105,11 +106,21 @@ class Lab {
   /// frames are emulated from; empty: from kept work.
   ExternalValidation validate_external(const std::string& scenes_folder = {});
 
+  /// All that a report shows of what `run`, `rank`, `compare` and `sweep` wrote (docs/report.md).
+  Report report(const std::vector<std::string>& inputs);
+  /// The same of a comparison that was just made: its variations become hardware that the page can take.
+  Report report(const Request& request, const std::vector<Variation>& variations,
+                const Comparison& comparison);
+  /// One HTML file that needs nothing else. Says what it lacks where parts of the page were not built.
+  /// Throws InputError U010.
+  void write_report(const Report& report, const std::string& file) const;
+
   /// Whether hwsim works here: its files, its modules, its cache, a small simulation.
   std::vector<SelfCheck> check_itself();
 
  private:
   Catalog catalog_;
+  std::string page_folder_;
   std::unique_ptr<Observer> silence_;
   std::unique_ptr<Session> session_;
 };

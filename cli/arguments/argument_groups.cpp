@@ -97,6 +97,11 @@ void add_out(CLI::App& app, OutPlace& out) {
   app.add_flag("--force", out.force, "Replace the results in --out");
 }
 
+void add_report_file(CLI::App& app, std::string& file) {
+  app.add_option("--report", file, "Also one HTML page of the results: see `hwsim report`")
+      ->type_name("FILE");
+}
+
 void add_view_flags(CLI::App& app, ViewArguments& view) {
   app.add_option_function<std::string>(
          "--resolution", [&view](const std::string& text) { view.resolution = parse_resolution(text); },

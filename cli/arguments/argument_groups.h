@@ -15,6 +15,7 @@ void add_common(CLI::App& app, CommonArguments& common);
 void add_sets(CLI::App& app, std::vector<std::string>& sets);
 void add_overlays(CLI::App& app, std::vector<std::string>& overlays);
 void add_out(CLI::App& app, OutPlace& out);
+void add_report_file(CLI::App& app, std::string& file);
 void add_view_flags(CLI::App& app, ViewArguments& view);
 /// The scene itself, then the flags of its view.
 void add_view(CLI::App& app, ViewArguments& view, bool required);

@@ -43,6 +43,7 @@ struct Parser {
   ExplainArguments explain;
   RankArguments rank;
   SweepArguments sweep;
+  ReportArguments report;
   ReferenceArguments reference;
   ListArguments list;
   ShowArguments show;
@@ -72,6 +73,7 @@ struct Parser {
   void add_explain();
   void add_rank();
   void add_sweep();
+  void add_report();
   void add_reference();
   void add_list_and_show();
   void add_scene();
@@ -96,6 +98,7 @@ void Parser::add_run() {
   add_points(sub, run);
   add_reference_samples(sub, run);
   add_out(sub, run.out);
+  add_report_file(sub, run.report);
   add_common(sub, run.common);
 }
 
@@ -111,6 +114,7 @@ void Parser::add_compare() {
   add_vary(sub, compare.vary, compare.zip);
   sub.add_flag("--counters", compare.counters, "Also the counters that changed");
   sub.add_flag("--all", compare.all, "Also the passes that do not change");
+  add_report_file(sub, compare.report);
   add_common(sub, compare.common);
 }
 
@@ -130,6 +134,7 @@ void Parser::add_rank() {
   sub.add_option("--budget", rank.budget, "Limits of aa_ms, frame_ms, extra_mib, memory_mib, dram_mb")
       ->type_name("LIMITS");
   add_out(sub, rank.out);
+  add_report_file(sub, rank.report);
   add_common(sub, rank.common);
 }
 
@@ -148,7 +153,19 @@ void Parser::add_sweep() {
   add_repeatable(sub, "--merge", sweep.merge, "Take over the points of another database (repeatable)",
                  "FILE");
   sub.add_flag("--dry-run", sweep.dry_run, "List the points, run nothing");
+  add_report_file(sub, sweep.report);
   add_common(sub, sweep.common);
+}
+
+void Parser::add_report() {
+  CLI::App& sub = add(app, "report", kHelpReport, [this] { return Command(report); });
+  sub.add_option("RESULTS", report.inputs,
+                 "Folders of `run` and `rank`, databases of `sweep`, JSON of `compare` and `rank`")
+      ->required()
+      ->type_name(" ");
+  sub.add_option("-o,--out", report.file, "The page; default report.html")->type_name("FILE");
+  sub.add_flag("--force", report.force, "Replace the file in --out");
+  add_common(sub, report.common);
 }
 
 void Parser::add_reference() {
@@ -316,6 +333,7 @@ Parser::Parser() {
   add_explain();
   add_rank();
   add_sweep();
+  add_report();
   add_reference();
   add_list_and_show();
   add_scene();

@@ -54,6 +54,7 @@ struct RunArguments {
   std::optional<int> reference_samples;
   bool no_image = false;
   bool no_cache = false;
+  std::string report;  ///< file of an HTML page; empty: none
 };
 
 /// One scene's results side by side, or results of earlier runs.
@@ -86,6 +87,14 @@ struct SweepArguments : RunArguments {
   bool dry_run = false;
   std::optional<std::string> shard;  ///< "1/4"
   std::vector<std::string> merge;
+};
+
+/// What was written by others of these, as one HTML page.
+struct ReportArguments {
+  CommonArguments common;
+  std::vector<std::string> inputs;
+  std::string file = "report.html";
+  bool force = false;
 };
 
 struct ReferenceArguments {
@@ -181,8 +190,8 @@ struct PrintText {
 
 using Command =
     std::variant<PrintText, RunArguments, ExplainArguments, RankArguments, CompareArguments, SweepArguments,
-                 ReferenceArguments, ListArguments, ShowArguments, SceneCheckArguments, ConfigArguments,
-                 DoctorArguments, HelpArguments, CacheArguments, FitArguments, ValidateArguments,
-                 ReproduceArguments, CompletionArguments, GpuNewArguments>;
+                 ReportArguments, ReferenceArguments, ListArguments, ShowArguments, SceneCheckArguments,
+                 ConfigArguments, DoctorArguments, HelpArguments, CacheArguments, FitArguments,
+                 ValidateArguments, ReproduceArguments, CompletionArguments, GpuNewArguments>;
 
 }  // namespace hwsim::cli

@@ -56,6 +56,13 @@ Runs many points: techniques, GPUs, and settings varied over lists and ranges. E
 written to the database before the first one runs, each result as it comes: --resume goes on
 after an interruption. Without a scene, prints what the database holds.)";
 
+inline constexpr std::string_view kHelpReport = R"(Examples:
+  hwsim run sponza_hall -t none,msaa4x --resolution 320x180 --reference 4 --out runs/hall --report hall.html
+  hwsim report runs/hall -o hall.html --force
+
+Writes one HTML file to forward: the answer with its limits, hardware that can be moved (the timing
+engine itself runs in the page), pictures to compare, tables and charts. It needs no network.)";
+
 inline constexpr std::string_view kHelpReference = R"(Examples:
   hwsim reference sponza_hall --resolution 320x180 --samples 4
   hwsim reference sponza_hall --resolution 160x90 --samples 16 --out reference_hall

@@ -3,6 +3,7 @@
 #include "cli/arguments/requests.h"
 #include "cli/commands/commands.h"
 #include "cli/commands/lab_options.h"
+#include "cli/commands/report_file.h"
 #include "cli/terminal/answer.h"
 #include "lab/base/messages.h"
 #include "lab/base/text.h"
@@ -20,13 +21,12 @@ Trials trials_of(const CompareArguments& options) {
   return trials;
 }
 
-Comparison simulate(const CompareArguments& options, Context& context) {
+Request base_request(const CompareArguments& options) {
   RunArguments base = options;
   base.view.scene = options.inputs.front();
   base.view.sets.clear();
   base.overlays.clear();
-  const Request request = request_of(base);
-  return Lab(lab_options(options, context.log)).compare(request, variations_of(trials_of(options)));
+  return request_of(base);
 }
 
 }  // namespace
@@ -36,9 +36,13 @@ ExitStatus compare(const CompareArguments& options, Context& context) {
   if (!results_given && options.inputs.size() > 1)
     fail_usage("U004", "one scene, or the folders of several results, can be compared", "",
                "`hwsim run SCENE --out DIR` for each scene, then `hwsim compare DIR DIR`");
-  const Comparison comparison = results_given
-                                    ? Lab(lab_options(options, context.log)).compare_folders(options.inputs)
-                                    : simulate(options, context);
+  check_report_place(options.report);
+  Lab lab(lab_options(options, context.log));
+  const Request request = results_given ? Request{} : base_request(options);
+  const std::vector<Variation> variations =
+      results_given ? std::vector<Variation>() : variations_of(trials_of(options));
+  const Comparison comparison =
+      results_given ? lab.compare_folders(options.inputs) : lab.compare(request, variations);
   const nlohmann::ordered_json json = to_json(comparison);
   const Table matrix = variation_matrix(comparison);
   print({.table = pass_comparison(comparison, options.all),
@@ -49,6 +53,9 @@ ExitStatus compare(const CompareArguments& options, Context& context) {
          .footing = options.counters ? "\n" + to_text(counter_comparison(comparison)) : std::string(),
          .json = &json},
         options.common);
+  write_report(lab, options.report, context, [&] {
+    return results_given ? lab.report(options.inputs) : lab.report(request, variations, comparison);
+  });
   return ExitStatus::done;
 }
 

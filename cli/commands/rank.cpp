@@ -3,6 +3,7 @@
 #include "cli/arguments/requests.h"
 #include "cli/commands/commands.h"
 #include "cli/commands/lab_options.h"
+#include "cli/commands/report_file.h"
 #include "cli/terminal/answer.h"
 #include "cli/terminal/interrupt.h"
 #include "lab/base/files.h"
@@ -43,6 +44,7 @@ std::string sentence(const Ranking& ranking) {
 
 ExitStatus rank(const RankArguments& options, Context& context) {
   if (!options.budget.empty()) parse_budget(options.budget);  // a mistake in it comes first
+  check_report_place(options.report);
   Lab lab(lab_options(options, context.log));
   const RunPlan plan = ranking_plan(plan_of(with_defaults(options), lab));
   context.log.say(plan_text(plan));
@@ -62,6 +64,7 @@ ExitStatus rank(const RankArguments& options, Context& context) {
   guard.keep();
   print({.table = table, .heading = sentence(ranking), .footing = {}, .json = &json}, options.common);
   context.log.say("results: " + place);
+  write_report(lab, options.report, context, [&] { return lab.report({place}); });
   return may_be_within(ranking.techniques.front().verdict) ? ExitStatus::done : ExitStatus::check_not_met;
 }
 

@@ -3,6 +3,7 @@
 #include "cli/arguments/requests.h"
 #include "cli/commands/commands.h"
 #include "cli/commands/lab_options.h"
+#include "cli/commands/report_file.h"
 #include "cli/terminal/interrupt.h"
 #include "cli/terminal/run_view.h"
 #include "lab/base/files.h"
@@ -22,6 +23,7 @@ lab::Run simulate(Lab& lab, const RunPlan& plan, RunRecord& record, ShownRun& sh
 }  // namespace
 
 ExitStatus run(const RunArguments& options, Context& context) {
+  check_report_place(options.report);
   InterruptGuard guard;
   Lab lab(lab_options(options, context.log));
   const RunPlan plan = plan_of(options, lab);
@@ -39,6 +41,7 @@ ExitStatus run(const RunArguments& options, Context& context) {
   answer.json = &json;
   print(answer, options.common);
   context.log.say("results: " + place);
+  write_report(lab, options.report, context, [&] { return lab.report({place}); });
   if (context.terminal.error_is_terminal && plan.reference_samples == 0)
     context.log.say("next: repeat with --reference for the error of the images");
   return ExitStatus::done;

@@ -5,6 +5,7 @@
 #include "cli/arguments/requests.h"
 #include "cli/commands/commands.h"
 #include "cli/commands/lab_options.h"
+#include "cli/commands/report_file.h"
 #include "cli/terminal/answer.h"
 #include "cli/terminal/interrupt.h"
 #include "lab/base/messages.h"
@@ -40,6 +41,7 @@ ExitStatus sweep(const SweepArguments& options, Context& context) {
   if (!has_scene && options.merge.empty() && !std::filesystem::exists(options.database))
     fail_usage("U002", "no scene, and no database `" + options.database + "` to print", "",
                "`hwsim sweep --help` shows examples");
+  check_report_place(options.report);
   Lab lab(lab_options(options, context.log));
   SweepPlan plan;
   if (has_scene) {
@@ -56,6 +58,7 @@ ExitStatus sweep(const SweepArguments& options, Context& context) {
   print_rows(summary.points, options.common);
   context.log.say(fmt::format("{} points done, {} failed, {} left, in {}", summary.done, summary.failed,
                               summary.left, summary.database));
+  write_report(lab, options.report, context, [&] { return lab.report({options.database}); });
   return summary.failed > 0 ? ExitStatus::some_points_failed : ExitStatus::done;
 }
 

@@ -13,7 +13,7 @@ struct CostSlopes {
 };
 
 bool all_zero(const std::vector<double>& values) {
-  return std::ranges::all_of(values, [](double value) { return value == 0.0; });
+  return std::all_of(values.begin(), values.end(), [](double value) { return value == 0.0; });
 }
 
 /// packets_of_a_fill backwards: from the packets of each chunk to the fills of those in its window.
@@ -120,7 +120,7 @@ TimeSlopes::TimeSlopes(const GpuValues<double>& gpu, std::span<const std::string
   for (std::size_t first = 0; first < keys.size(); first += kWidth) {
     const std::span<const std::string> block = keys.subspan(first, std::min(kWidth, keys.size() - first));
     rates_.push_back(derive_rates<Number>(lift<Number>(gpu, [&](std::string_view key, double value) {
-      const auto found = std::ranges::find(block, key);
+      const auto found = std::find(block.begin(), block.end(), key);
       return found == block.end() ? Number(value)
                                   : Number(value, static_cast<std::size_t>(found - block.begin()));
     })));

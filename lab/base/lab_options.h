@@ -11,6 +11,7 @@ inline constexpr std::uint64_t kDefaultCacheLimitBytes = std::uint64_t{4} << 30;
 
 struct LabOptions {
   std::string config_folder{};  ///< gpus, overlays, published tables, calibration; empty: those of hwsim
+  std::string page_folder{};    ///< parts of a report's page; empty: those built with hwsim
   std::string cache_folder{};   ///< for what can be made anew; empty: nothing outlives the lab
   std::uint64_t cache_limit_bytes = kDefaultCacheLimitBytes;  ///< what the traces on the disk may take
   int jobs = 1;                                               ///< threads

@@ -13,4 +13,7 @@ std::vector<std::string> split(std::string_view text, char separator);
 /// the piece before it.
 std::vector<std::string> split_techniques(std::string_view text);
 
+/// A word as a POSIX shell reads it back: quoted where it holds more than plain characters.
+std::string shell_word(const std::string& word);
+
 }  // namespace hwsim::lab

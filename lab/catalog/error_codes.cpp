@@ -48,7 +48,9 @@ constexpr ErrorCode kCodes[] = {
     {"U019", "bad axis",
      "--vary takes path=a,b,c or path=lo..hi:n or path=lo..hi:n:log; --zip wants lists of one length, "
      "--sample lhs:POINTS."},
-    {"U020", "no result", "The folder or file is not what `hwsim run` writes."},
+    {"U020", "no result",
+     "The folder or file is not what hwsim writes: results of `run` and `rank`, for a report also "
+     "the database of a sweep and the JSON of `compare` and `rank`."},
     {"U021", "database of a sweep",
      "The SQLite database cannot be opened or written, is damaged, or was not written by `hwsim sweep` of "
      "this "
@@ -57,6 +59,10 @@ constexpr ErrorCode kCodes[] = {
     {"U022", "bad budget",
      "--budget is a list of quantity<=number; quantities are aa_ms, frame_ms, extra_mib, memory_mib, "
      "dram_mb."},
+    {"U023", "number of points in a report",
+     "A page carries the counted work and the pictures of each point, and stays below 5 MB: it takes from 1 "
+     "to "
+     "32 points."},
     {"U040", "a frame of other features",
      "A frame is timed on GPUs with the features and limits that it was drawn for (features.*, "
      "functional.*): others "

@@ -118,6 +118,7 @@ constexpr std::array kRemedies = {
     Remedy{"U020", "the folder of a run, or its result.json"},
     Remedy{"U021", "a database that `hwsim sweep` wrote, or a new name"},
     Remedy{"U022", "--budget 'aa_ms<=1.5, extra_mib<=192'"},
+    Remedy{"U023", "give fewer folders, or run with fewer techniques and GPUs"},
     Remedy{"U030", "leave the flag out, or give a scene"},
     Remedy{"U040", "emulate the frame anew for this GPU"},
     Remedy{"X001", "please report the message: it is a mistake in hwsim"},

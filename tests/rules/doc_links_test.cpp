@@ -134,7 +134,7 @@ TEST(DocLinks, EveryTestSuiteThatAPageNamesExists) {
 // Sources move; what a page calls `folder/file.h` has to follow.
 TEST(DocLinks, EveryFileThatAPageNamesExists) {
   const std::regex path(
-      R"rx(`((?:algos|benchmarks|cli|cmake|configs|cost_models|docs|hwsim|lab|pipeline|python|scripts|tests)/[\w./-]+))rx");
+      R"rx(`((?:algos|benchmarks|cli|cmake|configs|cost_models|docs|hwsim|lab|page|pipeline|python|scripts|tests)/[\w./-]+))rx");
   for (const fs::path& page : project_files({".md"})) {
     if (page == "CHANGELOG.md") continue;
     for (const TextLine& line : lines_of(page))

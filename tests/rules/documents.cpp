@@ -12,8 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const char* const kFolders[] = {".ci",  "algos", "benchmarks", "cli",    "cmake",   "configs", "cost_models",
-                                "docs", "hwsim", "lab",        "python", "scripts", "tests",   "pipeline"};
+const char* const kFolders[] = {".ci",     "algos",       "benchmarks", "cli",      "cmake",
+                                "configs", "cost_models", "docs",       "hwsim",    "lab",
+                                "python",  "scripts",     "tests",      "pipeline", "page"};
 
 bool starts_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
 
@@ -53,7 +54,12 @@ std::vector<fs::path> project_files(const std::vector<std::string>& extensions) 
   for (const auto& entry : fs::directory_iterator(root)) add(entry);
   for (const char* folder : kFolders)
     if (fs::exists(root / folder))
-      for (const auto& entry : fs::recursive_directory_iterator(root / folder)) add(entry);
+      for (fs::recursive_directory_iterator entry(root / folder); entry != fs::recursive_directory_iterator();
+           ++entry) {
+        if (entry->path().filename() == "node_modules")
+          entry.disable_recursion_pending();  // not the project's
+        add(*entry);
+      }
   std::ranges::sort(files);
   return files;
 }

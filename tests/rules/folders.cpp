@@ -38,8 +38,8 @@ std::set<std::string> reached(const Arrows& arrows, const std::string& from) {
 
 }  // namespace
 
-const std::vector<std::string> kSourceFolders = {"hwsim", "pipeline", "algos",  "cost_models",
-                                                 "lab",   "cli",      "python", "benchmarks"};
+const std::vector<std::string> kSourceFolders = {"hwsim", "pipeline", "algos",      "cost_models", "lab",
+                                                 "cli",   "python",   "benchmarks", "page"};
 
 std::string Include::to_folder() const { return std::filesystem::path(to).parent_path().generic_string(); }
 

@@ -24,6 +24,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"cost_models", {"hwsim"}},
     {"lab", {"hwsim", "pipeline", "algos", "cost_models"}},
     {"cli", {"hwsim", "pipeline", "algos", "cost_models", "lab"}},
+    {"page", {"hwsim"}},
     {"python", {"hwsim", "pipeline", "algos", "cost_models", "lab"}},
     {"benchmarks", {"hwsim", "pipeline", "algos", "cost_models", "lab"}}};
 

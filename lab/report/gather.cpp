@@ -1,0 +1,222 @@
+#include "lab/report/gather.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "hwsim/config/assign.h"
+#include "hwsim/trace/trace_file.h"
+#include "lab/base/files.h"
+#include "lab/base/messages.h"
+#include "lab/base/text.h"
+#include "lab/report/offers.h"
+#include "lab/report/report_inputs.h"
+#include "lab/results/contact_sheet.h"
+
+namespace hwsim::lab {
+namespace {
+
+constexpr int kRegionSidePx = 64, kRegions = 6;
+
+float largest(const pipeline::Image& image) {
+  float found = 1.0f;
+  for (const glm::vec4& pixel : image.pixels) found = std::max(found, pixel.x);
+  return found;
+}
+
+/// Lifetimes follow from the frame graph, which is built again: it costs what loading the scene does.
+FrameMemory memory_of(SceneView& scene, const algos::TechniqueChoice& technique, const GpuConfig& gpu) {
+  algos::FrameRequest request = scene.frame_request();
+  request.features = gpu.features;
+  request.functional = gpu.functional;
+  const pipeline::FrameGraph graph = algos::build_frame(technique, request);
+  const pipeline::CompiledGraph compiled = pipeline::compile(graph, gpu.features, gpu.functional);
+  FrameMemory memory;
+  for (const int pass : compiled.order)
+    memory.passes.push_back(graph.passes()[static_cast<std::size_t>(pass)].name);
+  const auto add = [&](const auto& part, const pipeline::CompiledGraph::Lifetime& life) {
+    if (life.first_pass >= 0)
+      memory.parts.push_back({part.name, pipeline::allocated_bytes(part), life.first_pass, life.last_pass});
+  };
+  for (std::size_t i = 0; i < compiled.images.size(); ++i) add(graph.images()[i], compiled.images[i]);
+  for (std::size_t i = 0; i < compiled.buffers.size(); ++i) add(graph.buffers()[i], compiled.buffers[i]);
+  return memory;
+}
+
+/// The scene and the flags that give the view again.
+std::string view_words(View view) {
+  View plain;
+  std::string words = shell_word(view.scene);
+  if (view.resolution != plain.resolution)
+    words += fmt::format(" --resolution {}x{}", view.resolution.width_px, view.resolution.height_px);
+  if (view.camera != plain.camera) words += " --camera " + shell_word(view.camera);
+  const std::vector<Field> fields = fields_of(view), defaults = fields_of(plain);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const std::string value = to_toml(value_in(fields[i].slot));
+    if (fields[i].info.group == "scene" && value != to_toml(value_in(defaults[i].slot)))
+      words += fmt::format(" --set scene.{}={}", fields[i].info.key.name, value);
+  }
+  return words;
+}
+
+/// Takes points as they come into a report.
+class ReportSink : public RunSink {
+ public:
+  ReportSink(Report& report, Session& session) : report_(report), session_(session) {}
+
+  void begin(const RunContext& run) override {
+    const bool again =
+        run.reference && reference_ && view_ == run.plan.view && samples_ == run.reference->samples;
+    if (again) return;
+    reference_.reset();
+    if (!run.reference) return;
+    view_ = run.plan.view;
+    samples_ = run.reference->samples;
+    reference_ = report_.references.size();
+    report_.references.push_back(color_picture(run.reference->image));
+  }
+
+  void point(const PointResult& point, const RunContext& run) override {
+    ReportedPoint& shown = report_.points.emplace_back();
+    shown.explanation = explain(point, run.plan, run.scene.name);
+    shown.technique = algos::technique_text(*point.technique, true);
+    shown.view_words = view_words(run.plan.view);
+    shown.gpu = *point.gpu;
+    shown.trace = encode_trace(point.emulation->trace);
+    shown.memory = memory_of(session_.scene(run.plan.view), *point.technique, *point.gpu);
+    shown.reference = reference_;
+    take_pictures(point, run, shown.pictures);
+    shown.calibrated = run.plan.calibrated && run.plan.engine == Engine::queue;
+    for (const Diagnostic& note : run.scene.notes) take_note(note);
+  }
+
+  bool takes_failures() const override { return true; }
+  void failed(const algos::TechniqueChoice& technique, const GpuConfig& gpu,
+              const InputError& error) override {
+    report_.limits.push_back(
+        fmt::format("{} cannot run: {}", point_name(technique, gpu), error.diagnostics().front().message));
+  }
+
+  /// Where the images err most, of points that have the size of the first one.
+  void mark_regions() {
+    if (std::ranges::any_of(images_, [](const ShownImage& i) { return !i.error.empty(); }))
+      report_.regions = worst_regions(images_, kRegionSidePx, kRegions);
+  }
+
+ private:
+  /// What the loader of the scene ignored or changed: a default light, features that it does not know.
+  void take_note(const Diagnostic& note) {
+    if (std::ranges::find(report_.limits, note.message) == report_.limits.end())
+      report_.limits.push_back(note.message);
+  }
+
+  void take_pictures(const PointResult& point, const RunContext& run, PointPictures& pictures) {
+    const pipeline::Emulation& emulation = *point.emulation;
+    if (!run.plan.images || emulation.color.pixels.empty()) return;
+    pictures.color = color_picture(emulation.color);
+    pictures.heat =
+        value_picture(emulation.shading_heat, static_cast<double>(largest(emulation.shading_heat)));
+    if (point.flip_map.pixels.empty()) return;
+    pictures.flip = value_picture(point.flip_map, 1.0);
+    const auto same_size = [&](const ShownImage& first) {
+      return first.width == emulation.color.width && first.height == emulation.color.height;
+    };
+    if (images_.empty() || same_size(images_.front()))
+      images_.push_back(shown_image("", emulation.color, &point.flip_map));
+  }
+
+  Report& report_;
+  Session& session_;
+  std::optional<std::size_t> reference_;  ///< the one of view_ with samples_
+  View view_;
+  int samples_ = 0;
+  std::vector<ShownImage> images_;
+};
+
+void require_size(std::size_t points) {
+  if (points == 0)
+    fail("U023", "there is no point to report on", "", "a folder of `hwsim run` or `hwsim rank`, a sweep");
+  if (points > kReportPointsMax)
+    fail("U023", fmt::format("{} points, a report holds {} at most", points, kReportPointsMax), "",
+         "fewer folders, or fewer techniques and GPUs");
+}
+
+void run_all(const std::vector<RunPlan>& plans, Report& report, Session& session) {
+  std::size_t points = 0, stages = 0;
+  for (const RunPlan& plan : plans) {
+    points += plan.techniques.size() * plan.gpus.size();
+    stages += Session::stages(plan);
+  }
+  require_size(points);
+  StageProgress progress(session.observer(), stages);
+  ReportSink sink(report, session);
+  for (const RunPlan& plan : plans) session.run(plan, sink, progress);
+  require_size(report.points.size());
+  sink.mark_regions();
+}
+
+void finish(Report& report, Session& session) {
+  offer_gpus(report, session.files());
+  offer_what_ifs(report, session.files().folder());
+  report.published = published_points(report, session.files());
+  note_limits(report);
+  if (const auto calibration = session.files().calibration()) {
+    const auto [fast, slow] = extremes_of(report);
+    report.spread_interval = time_change_interval(*fast, *slow, *calibration);
+  }
+  const Result& first = report.points.front().explanation.result;
+  report.title = fmt::format("{} on {}", first.scene, first.gpu);
+}
+
+std::optional<std::size_t> changed_point(const Report& report, const RunPlan& plan,
+                                         const algos::TechniqueChoice& technique, const GpuConfig& gpu) {
+  for (std::size_t i = 0; i < report.points.size(); ++i) {
+    const ReportedPoint& point = report.points[i];
+    if (point.technique == algos::technique_text(technique, true) && point.gpu.id == gpu.id &&
+        functional_hash(point.gpu) == functional_hash(gpu) && plan.engine == Engine::queue)
+      return i;
+  }
+  return std::nullopt;
+}
+
+/// Variations that change nothing but numbers of a GPU become hardware that the page can take.
+void add_variations(const std::vector<RunPlan>& plans, const std::vector<Variation>& variations,
+                    Report& report) {
+  for (std::size_t i = 1; i < plans.size(); ++i)
+    for (const algos::TechniqueChoice& technique : plans[i].techniques)
+      for (const GpuConfig& gpu : plans[i].gpus)
+        if (const auto point = changed_point(report, plans[i], technique, gpu))
+          report.variations.push_back({variations[i - 1].label, *point, gpu});
+}
+
+}  // namespace
+
+Report gather_report(const std::vector<std::string>& inputs, Session& session) {
+  Report report;
+  std::vector<RunPlan> plans;
+  std::vector<ReportInput> kept;  // files of theirs are read by make_plan
+  for (const std::string& input : inputs) {
+    ReportInput& read = kept.emplace_back(read_report_input(input));
+    for (const Request& request : read.requests) plans.push_back(make_plan(request, session.files()));
+    if (read.ranking) report.ranking = std::move(read.ranking);
+    if (read.comparison) report.comparison = std::move(read.comparison);
+    if (read.sweep) report.sweep = std::move(read.sweep);
+  }
+  run_all(plans, report, session);
+  finish(report, session);
+  return report;
+}
+
+Report gather_report(const Request& request, const std::vector<Variation>& variations,
+                     const Comparison& comparison, Session& session) {
+  Report report;
+  const std::vector<RunPlan> plans = plans_of(request, variations, session.files());
+  run_all({plans.front()}, report, session);
+  report.comparison = comparison;
+  add_variations(plans, variations, report);
+  finish(report, session);
+  return report;
+}
+
+}  // namespace hwsim::lab

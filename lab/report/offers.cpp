@@ -1,0 +1,119 @@
+#include "lab/report/offers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "algos/techniques.h"
+#include "hwsim/config/toml_file.h"
+#include "lab/studies/published_runs.h"
+
+namespace hwsim::lab {
+namespace {
+
+bool is_offered(const Report& report, const GpuConfig& gpu) {
+  return std::ranges::any_of(report.gpus, [&](const OfferedGpu& offered) {
+    return offered.config.id == gpu.id && content_hash(offered.config) == content_hash(gpu);
+  });
+}
+
+std::string text_of(const TomlValue& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  return text ? *text : to_toml(value);
+}
+
+void add_once(std::vector<std::string>& sentences, const std::string& sentence) {
+  if (std::ranges::find(sentences, sentence) == sentences.end()) sentences.push_back(sentence);
+}
+
+}  // namespace
+
+void offer_gpus(Report& report, ConfigFiles& files) {
+  const auto offer = [&](const GpuConfig& gpu) {
+    if (!is_offered(report, gpu)) report.gpus.push_back({gpu, {}});
+  };
+  for (const ReportedPoint& point : report.points) offer(point.gpu);
+  for (const std::string& id : list_gpus(files.folder().gpus())) {
+    offer(files.gpu(id, {}, {}, true));
+    report.catalog_hashes[id] = content_hash(files.gpu(id, {}, {}, true));
+  }
+  const auto calibration = files.calibration();
+  if (!calibration) return;
+  report.intervals = cost_models::interval_model(*calibration);
+  for (OfferedGpu& gpu : report.gpus) {
+    const std::vector<std::string> keys = cost_models::interval_keys(*calibration, gpu.config.id);
+    const std::vector<std::string> ids = cost_models::interval_parameters(*calibration, gpu.config.id);
+    for (std::size_t i = 0; i < keys.size(); ++i) gpu.fitted.emplace_back(keys[i], ids[i]);
+    for (const ReportedPoint& point : report.points)
+      gpu.supports.push_back(point.calibrated ? cost_models::support_of(*calibration, gpu.config,
+                                                                        point.explanation.result.technique)
+                                              : Support::uncalibrated);
+  }
+}
+
+void offer_what_ifs(Report& report, const ConfigFolder& folder) {
+  for (const std::string& name : folder.overlay_names()) {
+    WhatIf what_if{.name = name};
+    std::vector<Diagnostic> problems;
+    for (const TomlEntry& entry : read_toml_file(folder.overlay_file(name), problems).entries) {
+      if (!entry.value || entry.path == "schema" || entry.path == "kind") continue;
+      if (entry.path == "about")
+        what_if.about = text_of(*entry.value);
+      else
+        what_if.changes.push_back({entry.path, text_of(*entry.value)});
+    }
+    report.what_ifs.push_back(std::move(what_if));
+  }
+}
+
+std::vector<PublishedPoint> published_points(const Report& report, ConfigFiles& files) {
+  const auto calibration = files.calibration();
+  std::vector<PublishedPoint> points;
+  if (!calibration) return points;
+  std::set<std::string> gpus;
+  for (const ReportedPoint& point : report.points)
+    if (calibration->gpu_hashes.contains(point.gpu.id)) gpus.insert(point.gpu.id);
+  for (const cost_models::Cell& cell : published_cells({}, files.folder())) {
+    const auto held = calibration->held_out_ms.find(cell.row.id());
+    const bool wanted = gpus.empty() || gpus.contains(cell.run.gpu);
+    if (held == calibration->held_out_ms.end() || cell.unit != "ms" || !wanted) continue;
+    const cost_models::PublishedRow& row = cell.row;
+    points.push_back({.row = row.id(),
+                      .paper = row.document,
+                      .gpu = cell.run.gpu,
+                      .technique = cell.run.technique,
+                      .scene = row.scene + (row.view.empty() ? "" : ", " + row.view),
+                      .what = row.pass,
+                      .published_ms = cell.published,
+                      .held_out_ms = held->second});
+  }
+  return points;
+}
+
+void note_limits(Report& report) {
+  const std::vector<std::string> of_scenes = std::move(report.limits);
+  report.limits.clear();
+  for (const ReportedPoint& point : report.points) {
+    const Result& result = point.explanation.result;
+    const std::string name = result.technique + " on " + result.gpu;
+    if (result.frame.support == "extrapolated")
+      add_once(report.limits, name +
+                                  ": extrapolated. No published time of this technique, or of such a GPU, "
+                                  "was fitted.");
+    if (result.frame.support == "interpolated")
+      add_once(report.limits, name + ": interpolated. The technique was fitted on other GPUs.");
+    if (result.frame.support == "uncalibrated")
+      add_once(report.limits,
+               result.gpu +
+                   ": uncalibrated. Rates are those of documents, efficiencies are assumed, and no "
+                   "interval can be given. Trust ratios on one GPU more than times.");
+    if (result.engine != "queue")
+      add_once(report.limits, "The report's times are those of engine " + result.engine +
+                                  "; moved hardware is timed by engine queue.");
+    for (const std::string& warning : result.warnings) add_once(report.limits, name + ": " + warning);
+  }
+  for (const std::string& note : of_scenes) add_once(report.limits, note);
+}
+
+}  // namespace hwsim::lab

@@ -1,0 +1,21 @@
+#pragma once
+// What a report offers beside its points: other hardware, and what is known of how far to believe it.
+#include "lab/catalog/config_files.h"
+#include "lab/report/report.h"
+
+namespace hwsim::lab {
+
+/// The GPUs of the points, then all others of the configuration, with the intervals of each point on each.
+void offer_gpus(Report& report, ConfigFiles& files);
+
+/// Every overlay that comes with hwsim.
+void offer_what_ifs(Report& report, const ConfigFolder& folder);
+
+/// Published times on the GPUs of the report, or on all calibrated ones where it has none of these, beside
+/// their held-out predictions.
+std::vector<PublishedPoint> published_points(const Report& report, ConfigFiles& files);
+
+/// What its readers must know of the frames: what is not modeled, extrapolated, or by default.
+void note_limits(Report& report);
+
+}  // namespace hwsim::lab

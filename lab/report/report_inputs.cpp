@@ -1,0 +1,112 @@
+#include "lab/report/report_inputs.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "hwsim/base/file_name.h"
+#include "lab/base/files.h"
+#include "lab/base/messages.h"
+#include "lab/request/run_file.h"
+#include "lab/studies/sweep_rows.h"
+#include "lab/studies/sweep_store.h"
+
+namespace hwsim::lab {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kSweepPoints = 12;   ///< points of a sweep whose traces are taken
+constexpr std::size_t kSweepRows = 2'000;  ///< rows of a sweep that are shown
+
+bool is_there(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+[[noreturn]] void no_input(const std::string& path) {
+  fail("U020", "`" + path + "` is nothing that a report can be made of", "",
+       "a folder of `hwsim run` or `hwsim rank`, a run.toml, the database of a sweep, or the JSON of "
+       "`hwsim compare --json` or `hwsim rank --json`");
+}
+
+ReportInput read_json(const std::string& path) try {
+  const Json json = Json::parse(read_file(path));
+  ReportInput input;
+  if (json.contains("baseline"))
+    input.comparison = comparison_from_json(json);
+  else if (json.contains("techniques"))
+    input.ranking = ranking_from_json(json);
+  else
+    no_input(path);
+  return input;
+} catch (const Json::exception& error) {
+  fail("U020", "`" + path + "` is no answer of `hwsim compare` or `hwsim rank`: " + error.what());
+}
+
+/// The first point of each technique and GPU: others differ in numbers that the page can move.
+ReportInput read_sweep(const std::string& path) {
+  ReportInput input;
+  const RowSource rows = sweep_rows(path);
+  input.sweep = Table{rows.columns, {}};
+  rows.each([&](const std::vector<TableCell>& row) {
+    if (input.sweep->rows.size() < kSweepRows) input.sweep->rows.push_back(row);
+  });
+  Database database = open_sweep(path, SweepAccess::look);
+  Database::Statement select(
+      database, "SELECT technique, gpu, run_file, gpu_file FROM point WHERE state = 'done' ORDER BY number");
+  std::set<std::pair<std::string, std::string>> seen;
+  input.files = std::make_shared<const TemporaryFolder>();
+  while (select.step() && input.requests.size() < kSweepPoints) {
+    if (!seen.emplace(select.text(0), select.text(1)).second) continue;
+    const fs::path place = input.files->path() / std::to_string(input.requests.size());
+    fs::create_directory(place);
+    write_file((place / "run.toml").string(), select.text(2));
+    write_file((place / "gpu.toml").string(), select.text(3));
+    input.requests.push_back(read_run_file((place / "run.toml").string()));
+  }
+  return input;
+}
+
+/// Techniques in the order in which they were asked for, where a manifest says it.
+void order_as_asked(std::vector<Request>& requests, const fs::path& manifest) {
+  if (!is_there(manifest)) return;
+  const Json json = Json::parse(read_file(manifest.string()), nullptr, false);
+  std::vector<std::string> asked;
+  if (json.is_object() && json.contains("points") && json["points"].is_array())
+    for (const Json& point : json["points"])
+      if (point.is_object()) asked.push_back(point.value("technique", ""));
+  std::ranges::stable_sort(requests, std::less{}, [&](const Request& request) {
+    return std::ranges::find(asked, request.techniques.front()) - asked.begin();
+  });
+}
+
+ReportInput read_folder(const fs::path& folder) {
+  ReportInput input;
+  if (is_there(folder / "ranking.json"))
+    input.ranking = read_json((folder / "ranking.json").string()).ranking;
+  std::vector<fs::path> files;
+  if (is_there(folder / "run.toml")) files.push_back(folder / "run.toml");
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (is_there(entry.path() / "run.toml")) files.push_back(entry.path() / "run.toml");
+  std::ranges::sort(files);
+  for (const fs::path& file : files) input.requests.push_back(read_run_file(file.string()));
+  order_as_asked(input.requests, folder / "manifest.json");
+  if (files.empty()) no_input(folder.string());
+  return input;
+}
+
+}  // namespace
+
+ReportInput read_report_input(const std::string& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) return read_folder(path);
+  if (!is_there(path)) fail("U011", "there is no `" + path + "`");
+  if (has_extension(path, ".json")) return read_json(path);
+  if (has_extension(path, ".toml")) return {.requests = {read_run_file(path)}};
+  return read_sweep(path);
+}
+
+}  // namespace hwsim::lab

@@ -1,0 +1,28 @@
+#pragma once
+// What stands in the folders and files that a report is made of: the requests of their points, and what a
+// study found.
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lab/base/files.h"
+#include "lab/base/table.h"
+#include "lab/request/request.h"
+#include "lab/studies/comparison.h"
+#include "lab/studies/ranking.h"
+
+namespace hwsim::lab {
+
+struct ReportInput {
+  std::vector<Request> requests{};  ///< a point each
+  std::optional<Ranking> ranking{};
+  std::optional<Comparison> comparison{};
+  std::optional<Table> sweep{};
+  std::shared_ptr<const TemporaryFolder> files{};  ///< that requests of a sweep name
+};
+
+/// Throws InputError U020 for what no command of hwsim wrote, and what reading it throws.
+ReportInput read_report_input(const std::string& path);
+
+}  // namespace hwsim::lab
