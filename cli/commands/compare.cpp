@@ -36,7 +36,7 @@ ExitStatus compare(const CompareArguments& options, Context& context) {
   if (!results_given && options.inputs.size() > 1)
     fail_usage("U004", "one scene, or the folders of several results, can be compared", "",
                "`hwsim run SCENE --out DIR` for each scene, then `hwsim compare DIR DIR`");
-  check_report_place(options.report);
+  check_report_place(options.report, options.common.force);
   Lab lab(lab_options(options, context.log));
   const Request request = results_given ? Request{} : base_request(options);
   const std::vector<Variation> variations =

@@ -44,7 +44,7 @@ std::string sentence(const Ranking& ranking) {
 
 ExitStatus rank(const RankArguments& options, Context& context) {
   if (!options.budget.empty()) parse_budget(options.budget);  // a mistake in it comes first
-  check_report_place(options.report);
+  check_report_place(options.report, options.common.force);
   Lab lab(lab_options(options, context.log));
   const RunPlan plan = ranking_plan(plan_of(with_defaults(options), lab));
   context.log.say(plan_text(plan));

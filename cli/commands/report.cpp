@@ -21,13 +21,15 @@ std::string command_line(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
-void check_report_place(const std::string& file) {
+void check_report_place(const std::string& file, bool force) {
   if (file.empty()) return;
   std::error_code error;
   const fs::path folder = fs::path(file).parent_path();
   if (!folder.empty() && !fs::is_directory(folder, error))
     fail("U010", "cannot write `" + file + "`: there is no folder `" + folder.string() + "`");
   if (fs::is_directory(file, error)) fail("U010", "cannot write `" + file + "`: it is a folder");
+  if (!force && fs::exists(file, error))
+    fail("U013", "`" + file + "` is there already", "", "--force replaces it, another name keeps it");
 }
 
 void write_report(const Lab& lab, const std::string& file, Context& context,
@@ -41,10 +43,7 @@ void write_report(const Lab& lab, const std::string& file, Context& context,
 }
 
 ExitStatus report(const ReportArguments& options, Context& context) {
-  check_report_place(options.file);
-  std::error_code error;
-  if (!options.force && fs::exists(options.file, error))
-    fail("U013", "`" + options.file + "` is there already", "", "--force replaces it, -o names another file");
+  check_report_place(options.file, options.force);
   Lab lab(lab_options(options.common, context.log));
   write_report(lab, options.file, context, [&] { return lab.report(options.inputs); });
   return ExitStatus::done;

@@ -9,8 +9,9 @@
 
 namespace hwsim::cli {
 
-/// A place that cannot take a page is told before the work. Throws InputError U010.
-void check_report_place(const std::string& file);
+/// A place that cannot take a page is told before the work. Throws InputError U010, and U013 for a file that
+/// is there already, unless `force` replaces it.
+void check_report_place(const std::string& file, bool force);
 
 /// Writes what `gather` gives to the file; nothing without a name.
 void write_report(const Lab& lab, const std::string& file, Context& context,

@@ -23,7 +23,7 @@ lab::Run simulate(Lab& lab, const RunPlan& plan, RunRecord& record, ShownRun& sh
 }  // namespace
 
 ExitStatus run(const RunArguments& options, Context& context) {
-  check_report_place(options.report);
+  check_report_place(options.report, options.common.force);
   InterruptGuard guard;
   Lab lab(lab_options(options, context.log));
   const RunPlan plan = plan_of(options, lab);

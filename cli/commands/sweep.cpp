@@ -41,7 +41,7 @@ ExitStatus sweep(const SweepArguments& options, Context& context) {
   if (!has_scene && options.merge.empty() && !std::filesystem::exists(options.database))
     fail_usage("U002", "no scene, and no database `" + options.database + "` to print", "",
                "`hwsim sweep --help` shows examples");
-  check_report_place(options.report);
+  check_report_place(options.report, options.common.force);
   Lab lab(lab_options(options, context.log));
   SweepPlan plan;
   if (has_scene) {
