@@ -2,7 +2,7 @@
 // moves by parts of a pixel: Markdown tables on standard output.
 //
 //   quality_study [--samples=256] [--size=480x270] [--frames=8] [--jobs=2] [--only=errors|stability|kept]
-//                 [--lights=scene|simple|complex] [--technique=T ...] [scene ...]
+//                 [--lights=scene|simple|complex] [--light_strength=1] [--technique=T ...] [scene ...]
 // --lights=complex is the papers' rig: a light with a shadow map, and 16 point lights that reach the whole
 // scene. `kept` gives filters the truth itself, which has no edges left to smooth, or an image file: what
 // they change of it they lose.
@@ -76,6 +76,7 @@ struct Study {
   int width_px = 480, height_px = 270;
   int samples = 256, frames = 8, jobs = 2;
   bool errors = true, stability = true, kept = true;
+  double light_strength = 1.0;
   std::string lights = "scene";  ///< others reach the whole scene, and come with shadows, as in the papers
   std::vector<std::string> scenes, techniques;
 };
@@ -278,6 +279,8 @@ bool parse(std::string_view argument, Study& study) {
     study.lights = text;
     return text == "scene" || text == "simple" || text == "complex";
   }
+  if (const auto text = value("--light_strength="); !text.empty())
+    return (study.light_strength = std::atof(std::string(text).c_str())) > 0.0;
   if (const auto text = value("--technique="); !text.empty()) {
     study.techniques.emplace_back(text);
     return true;
@@ -303,6 +306,7 @@ void run(const std::string& name, const Study& study) {
   FrameRequest request = open_study({.scene = name,
                                      .resolution = {study.width_px, study.height_px},
                                      .light_range = of_papers ? 1.0 : 0.15,
+                                     .light_strength = study.light_strength,
                                      .lights = study.lights,
                                      .shadows = of_papers,
                                      .metal_ambient = false});  // as the papers' shaders have it

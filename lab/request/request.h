@@ -33,6 +33,7 @@ struct View {
   std::string camera = "0";  ///< a name or an index
   int point_lights = 0;
   double light_range = 0.15;
+  double light_strength = 1.0;
   double light_range_from = 0.0, light_range_to = 0.0;
   double light_box_x = 0.0, light_box_y = 0.0, light_box_z = 0.0;
   int light_seed = 0;
@@ -94,7 +95,7 @@ struct Field {
 
 template <class Visitor>
 void describe(Visitor& v, View& view) {
-  auto& [scene, resolution, camera, point_lights, light_range, light_range_from, light_range_to, light_box_x,
+  auto& [scene, resolution, camera, point_lights, light_range, light_strength, light_range_from, light_range_to, light_box_x,
          light_box_y, light_box_z, light_seed, lights, shadows, shadow_map_px, metal_ambient, anisotropy,
          alpha_test, reference_shadows, exposure, memory_mib] = view;
   auto& [width_px, height_px] = resolution;
@@ -119,6 +120,13 @@ void describe(Visitor& v, View& view) {
            "light_range",
            kWork | kReference},
           light_range);
+  v.field(
+      {{"light_strength", 0, 1000, kNoFlags,
+        "factor on the light of the lights that are added; less than 1 where they whiten what is near them"},
+       "scene",
+       "light_strength",
+       kWork | kReference},
+      light_strength);
   v.field({{"light_range_from", 0, 1e6, kNoFlags, "least reach of an added light, in the scene's unit"},
            "scene",
            "light_range_from",

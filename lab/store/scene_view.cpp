@@ -225,7 +225,7 @@ const std::shared_ptr<const pipeline::Scene>& SceneView::scene() {
 
 algos::FrameRequest SceneView::frame_request() {
   // All members by name, as in `describe`: a new one that is forgotten here does not compile.
-  const auto& [scene_name, resolution, camera, point_lights, light_range, light_range_from, light_range_to,
+  const auto& [scene_name, resolution, camera, point_lights, light_range, light_strength, light_range_from, light_range_to,
                light_box_x, light_box_y, light_box_z, light_seed, lights, shadows, shadow_map_px,
                metal_ambient, anisotropy, alpha_test, reference_shadows, exposure, memory_mib] = plan_;
   static_cast<void>(scene_name), static_cast<void>(camera);    // scene(), camera_
@@ -239,6 +239,7 @@ algos::FrameRequest SceneView::frame_request() {
   request.camera = camera_;
   request.point_lights = point_lights;
   request.light_range = light_range;
+  request.light_strength = light_strength;
   request.added = {{light_box_x, light_box_y, light_box_z}, light_range_from, light_range_to, light_seed};
   request.lights = light_profile_from_name(lights).value_or(algos::LightProfile::scene);
   request.shadows = shadows;

@@ -156,6 +156,7 @@ TEST(Request, FrameHasTheDefaultsOfAView) {
   const algos::FrameRequest frame;
   EXPECT_EQ(frame.point_lights, view.point_lights);
   EXPECT_EQ(frame.light_range, view.light_range);
+  EXPECT_EQ(frame.light_strength, view.light_strength);
   EXPECT_EQ(frame.shadows, view.shadows);
   EXPECT_EQ(frame.shadow_map_px, view.shadow_map_px);
   EXPECT_EQ(frame.metal_ambient, view.metal_ambient);
