@@ -173,9 +173,8 @@ std::vector<std::string> interval_parameters(const Calibration& calibration, con
 }
 
 Support support_of(const Calibration& calibration, const GpuConfig& gpu, const std::string& technique) {
-  const auto hash = calibration.gpu_hashes.find(gpu.id);
-  if (hash == calibration.gpu_hashes.end()) return Support::uncalibrated;
-  return support_of(calibration, gpu, hash->second, technique);
+  const std::string fitted_id = calibrated_id(calibration, gpu);
+  return fitted_id.empty() ? Support::uncalibrated : support_of(calibration, gpu, fitted_id, technique);
 }
 
 }  // namespace hwsim::cost_models

@@ -118,8 +118,7 @@ void add_point_lights(const FrameRequest& request, int count, LightingUniforms& 
   // point, they share what two give: sixteen of full reach would leave most of the frame white.
   const float box_m3 = space.extent.x * space.extent.y * space.extent.z, light_m3 = space.light_m3();
   const float lights_at_a_point = static_cast<float>(count) * (light_m3 < box_m3 ? light_m3 / box_m3 : 1.0f);
-  const float share =
-      static_cast<float>(request.light_strength) / std::max(1.0f, lights_at_a_point / 2.0f);
+  const float share = static_cast<float>(request.light_strength) / std::max(1.0f, lights_at_a_point / 2.0f);
   Pcg random(request.added.seed);
   if (lighting.point_count == 0) lighting.points.clear();
   for (int i = 0; i < count; ++i) {

@@ -40,9 +40,9 @@ class SeparateDraws;  // frame_parts.h
 struct FrameRequest {
   std::shared_ptr<const pipeline::Scene> scene;
   int width_px = 1280, height_px = 720;
-  int camera = 0;             ///< index into Scene::cameras
-  int point_lights = 0;       ///< 0..1024 seeded point lights added to those of the scene
-  double light_range = 0.15;  ///< reach of the lights added, as a part of the scene's diagonal
+  int camera = 0;               ///< index into Scene::cameras
+  int point_lights = 0;         ///< 0..1024 seeded point lights added to those of the scene
+  double light_range = 0.15;    ///< reach of the lights added, as a part of the scene's diagonal
   double light_strength = 1.0;  ///< factor on the light of the lights added
   AddedLights added;
   LightProfile lights = LightProfile::scene;

@@ -18,18 +18,19 @@ namespace {
 /// A rate that belongs to a size: whoever changes the size changes the rate, too.
 struct Dependency {
   std::string_view rate, size, why;
+  bool is_part = false;  ///< the rate is made of the size's parts: it never stays when the size changes
 };
 
 /// In the order in which guesses follow from each other.
 constexpr Dependency kDependencies[] = {
     {"raster_engines", "shader_cores", "a rasterizer serves a group of cores"},
-    {"tex_bilinear_per_clk", "shader_cores", "texture units are part of the cores"},
-    {"export_px_per_clk", "crop_units", "the path to the ROPs is as wide as they are"},
+    {"tex_bilinear_per_clk", "shader_cores", "texture units are part of the cores", true},
+    {"export_px_per_clk", "crop_units", "the path to the ROPs is as wide as they are", true},
     {"atomic_lane_ops_per_clk", "crop_units", "atomics run beside the ROPs"},
-    {"raster_samples_per_clk", "raster_engines", "of all rasterizers"},
-    {"hiz_px_per_clk", "raster_engines", "of all rasterizers"},
-    {"setup_drawn_triangles_per_clk", "raster_engines", "of all rasterizers"},
-    {"setup_culled_triangles_per_clk", "raster_engines", "of all rasterizers"},
+    {"raster_samples_per_clk", "raster_engines", "of all rasterizers", true},
+    {"hiz_px_per_clk", "raster_engines", "of all rasterizers", true},
+    {"setup_drawn_triangles_per_clk", "raster_engines", "of all rasterizers", true},
+    {"setup_culled_triangles_per_clk", "raster_engines", "of all rasterizers", true},
     {"l2_bytes_per_clk", "dram_bandwidth_gb_s", "a slice of L2 for each memory channel"},
     {"dram_channels", "dram_bandwidth_gb_s", "more bandwidth by more channels"},
     {"unit_lines_max", "dram_bandwidth_gb_s", "enough lines on their way to keep DRAM busy"},
@@ -161,7 +162,7 @@ std::vector<Diagnostic> kept_rates(const GpuConfig& gpu) {
   std::vector<Diagnostic> warnings;
   for (const Dependency& d : kDependencies) {
     const auto rate = gpu.origins.find(d.rate);
-    const bool kept = rate != gpu.origins.end() && rate->second.layer == Origin::Layer::parent;
+    const bool kept = d.is_part && rate != gpu.origins.end() && rate->second.layer == Origin::Layer::parent;
     if (!kept || !in_own_file(gpu, d.size)) continue;
     Diagnostic warning{
         .severity = Severity::warning,

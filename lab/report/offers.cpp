@@ -42,8 +42,9 @@ void offer_gpus(Report& report, ConfigFiles& files) {
   if (!calibration) return;
   report.intervals = cost_models::interval_model(*calibration);
   for (OfferedGpu& gpu : report.gpus) {
-    const std::vector<std::string> keys = cost_models::interval_keys(*calibration, gpu.config.id);
-    const std::vector<std::string> ids = cost_models::interval_parameters(*calibration, gpu.config.id);
+    const std::string fitted_id = cost_models::calibrated_id(*calibration, gpu.config);
+    const std::vector<std::string> keys = cost_models::interval_keys(*calibration, fitted_id);
+    const std::vector<std::string> ids = cost_models::interval_parameters(*calibration, fitted_id);
     for (std::size_t i = 0; i < keys.size(); ++i) gpu.fitted.emplace_back(keys[i], ids[i]);
     for (const ReportedPoint& point : report.points)
       gpu.supports.push_back(point.calibrated ? cost_models::support_of(*calibration, gpu.config,

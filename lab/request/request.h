@@ -95,9 +95,9 @@ struct Field {
 
 template <class Visitor>
 void describe(Visitor& v, View& view) {
-  auto& [scene, resolution, camera, point_lights, light_range, light_strength, light_range_from, light_range_to, light_box_x,
-         light_box_y, light_box_z, light_seed, lights, shadows, shadow_map_px, metal_ambient, anisotropy,
-         alpha_test, reference_shadows, exposure, memory_mib] = view;
+  auto& [scene, resolution, camera, point_lights, light_range, light_strength, light_range_from,
+         light_range_to, light_box_x, light_box_y, light_box_z, light_seed, lights, shadows, shadow_map_px,
+         metal_ambient, anisotropy, alpha_test, reference_shadows, exposure, memory_mib] = view;
   auto& [width_px, height_px] = resolution;
   // The scene's content and the camera's index stand in the keys of caches, not what the user called them.
   v.field(

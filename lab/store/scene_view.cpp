@@ -225,9 +225,10 @@ const std::shared_ptr<const pipeline::Scene>& SceneView::scene() {
 
 algos::FrameRequest SceneView::frame_request() {
   // All members by name, as in `describe`: a new one that is forgotten here does not compile.
-  const auto& [scene_name, resolution, camera, point_lights, light_range, light_strength, light_range_from, light_range_to,
-               light_box_x, light_box_y, light_box_z, light_seed, lights, shadows, shadow_map_px,
-               metal_ambient, anisotropy, alpha_test, reference_shadows, exposure, memory_mib] = plan_;
+  const auto& [scene_name, resolution, camera, point_lights, light_range, light_strength, light_range_from,
+               light_range_to, light_box_x, light_box_y, light_box_z, light_seed, lights, shadows,
+               shadow_map_px, metal_ambient, anisotropy, alpha_test, reference_shadows, exposure,
+               memory_mib] = plan_;
   static_cast<void>(scene_name), static_cast<void>(camera);    // scene(), camera_
   static_cast<void>(anisotropy), static_cast<void>(exposure);  // load_options()
   static_cast<void>(alpha_test);

@@ -187,8 +187,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json errors_json(const ExternalErrors& e) {
-  return {{"rows", e.rows},         {"mape_pct", e.mape_pct},         {"median_ape_pct", e.median_ape_pct},
-          {"bias_pct", e.bias_pct}, {"coverage90_pct", e.coverage90_pct}, {"width_ratio", e.width_ratio}};
+  return {{"rows", e.rows},
+          {"mape_pct", e.mape_pct},
+          {"median_ape_pct", e.median_ape_pct},
+          {"bias_pct", e.bias_pct},
+          {"coverage90_pct", e.coverage90_pct},
+          {"width_ratio", e.width_ratio}};
 }
 
 Json named_json(const NamedValues<ExternalErrors>& values) {
@@ -215,7 +219,8 @@ Json row_json(const ExternalRow& row) {
 void add_errors(Table& table, const std::string& name, const ExternalErrors& e) {
   const bool intervals = e.width_ratio > 0.0;
   table.rows.push_back({name, std::uint64_t{e.rows}, Real{e.mape_pct, 1}, Real{e.median_ape_pct, 1},
-                        Real{e.bias_pct, 1}, intervals ? TableCell{Real{e.coverage90_pct, 0}} : NotApplicable{},
+                        Real{e.bias_pct, 1},
+                        intervals ? TableCell{Real{e.coverage90_pct, 0}} : NotApplicable{},
                         intervals ? TableCell{Real{e.width_ratio, 1}} : NotApplicable{}});
 }
 

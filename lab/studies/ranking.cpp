@@ -52,7 +52,7 @@ void mark_pareto(std::vector<RankedTechnique>& techniques) {
 std::vector<std::string> rankable_techniques() {
   std::vector<std::string> names;
   for (const algos::TechniqueInfo& info : algos::techniques())
-    if (info.kind() != algos::TechniqueKind::modifier) names.emplace_back(info.id);
+    if (info.kind() != algos::TechniqueKind::modifier && !info.linear_input) names.emplace_back(info.id);
   return names;
 }
 

@@ -44,7 +44,7 @@ struct Ranking {
 /// Marks the techniques that no other one beats in both time and error; one that cannot run beats nobody.
 void mark_pareto(std::vector<RankedTechnique>& techniques);
 
-/// Every base on its own, and every filter behind no anti-aliasing: what `list techniques` names.
+/// Every base on its own, and every filter that smooths behind no anti-aliasing.
 std::vector<std::string> rankable_techniques();
 
 /// The plan with `none` in front, since costs are those beyond a frame without anti-aliasing, and with a

@@ -62,7 +62,7 @@ TEST(Memory, OfAPixelIsThatOfTheLayout) {
 }
 
 TEST(GBufferLayout, HasTheBytesOfItsName) {
-  const int expected[] = {24, 36, 16, 20};  // without lit color; lauritzen: depth with stencil in 8 bytes
+  const int expected[] = {24, 36, 16, 20, 20};  // without lit color; lauritzen: depth with stencil in 8 bytes
   for (std::size_t i = 0; i < algos::gbuffer_layouts().size(); ++i)
     EXPECT_EQ(algos::gbuffer_sample_bytes(algos::gbuffer_layouts()[i], 8), expected[i])
         << algos::gbuffer_layouts()[i].id;
@@ -122,12 +122,14 @@ TEST(SimpleComplex, FindsAWallSimpleInEveryLayout) {
   add_grid(corners, {-60, -40, -31}, {120, 0, 17}, {0, 80, 6}, 1);
   const auto scene = share(faceted_scene(corners));
   for (const algos::GBufferLayout& layout : algos::gbuffer_layouts())
-    for (const char* lighting : {"stencil", "compute"})
+    for (const char* lighting : {"stencil", "compute"}) {
+      if (layout.depth_multisampled == Format::d32_float && lighting == std::string("stencil")) continue;
       EXPECT_EQ(lit_samples("deferred_simple_complex:lighting=" + std::string(lighting) +
                                 ",layout=" + std::string(layout.id),
                             scene),
                 160u * 90u)
           << layout.id << ", " << lighting;
+    }
 }
 
 // The tiles' samples go to the image at once, as in Lauritzen's program: no pass brings them to a

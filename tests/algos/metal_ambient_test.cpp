@@ -114,7 +114,7 @@ TEST(UnlitSurfaces, CostLessThanLitOnes) {
   unlit.scene = share(std::move(scene));
   for (const char* technique : {"none", "wire_aa", "wire_aa:lighting=both"})
     EXPECT_LT(operations(drawn(technique, unlit)), operations(drawn(technique, lit))) << technique;
-  for (const char* technique : {"sss_gs:mode=or", "sss_cs:mode=or", "sss_ppll:mode=or"})
+  for (const char* technique : {"sss_gs:mode=or,rho_min=0", "sss_cs:mode=or,rho_min=0", "sss_ppll:mode=or"})
     EXPECT_LT(operations(drawn(technique, unlit), "sample"), operations(drawn(technique, lit), "sample"))
         << technique;
 }

@@ -172,13 +172,13 @@ TEST(Options, NamesOfSelectiveSupersamplingMeanTheirFields) {
 TEST(Options, NamesOfOtherTechniquesMeanTheirFields) {
   {
     using Struct = SimpleComplexOptions;
-    check_fields<Struct>(
-        "deferred_simple_complex",
-        {FIELD("samples", o.gbuffer.samples), FIELD("layout", o.gbuffer.layout),
-         FIELD("centroid", o.gbuffer.centroid), FIELD("emulate", o.gbuffer.emulate),
-         FIELD("prepass", o.gbuffer.prepass), FIELD("lighting", o.lighting),
-         FIELD("normal_dot_min", o.normal_dot_min), FIELD("z_scale", o.z_scale),
-         FIELD("compare_all", o.compare_all), FIELD("alpha_to_coverage", o.alpha_to_coverage)});
+    check_fields<Struct>("deferred_simple_complex",
+                         {FIELD("samples", o.gbuffer.samples), FIELD("layout", o.gbuffer.layout),
+                          FIELD("centroid", o.gbuffer.centroid), FIELD("emulate", o.gbuffer.emulate),
+                          FIELD("prepass", o.gbuffer.prepass), FIELD("lighting", o.lighting),
+                          FIELD("normal_dot_min", o.normal_dot_min), FIELD("z_scale", o.z_scale),
+                          FIELD("compare_all", o.compare_all),
+                          FIELD("alpha_to_coverage", o.alpha_to_coverage), FIELD("resolve", o.resolve)});
   }
   {
     using Struct = WireOptions;

@@ -52,6 +52,7 @@ TEST(PublishedRequests, EverySettingOfASceneCanBeSaid) {
                             ? "1"
                             : std::string(field.info.choices.substr(field.info.choices.rfind('|') + 1));
     if (std::holds_alternative<bool*>(field.slot)) value = "false";
+    if (const auto* real = std::get_if<double*>(&field.slot); real && **real == 1.0) value = "0.5";
     if (field.info.key.low >= 1.0)
       value = std::to_string(static_cast<int>(std::min(64.0, field.info.key.high)));
     const std::string name(field.info.key.name);

@@ -307,7 +307,8 @@ TEST_F(RunFile, SchemaNamesEveryKeyThatIsWritten) {
   for (std::string line; std::getline(text, line);) written.insert(line.substr(0, line.find(' ')));
   EXPECT_EQ(known, written);
   EXPECT_EQ(schema.at("properties").at("width_px").at("maximum"), kMaxSidePx);
-  EXPECT_EQ(schema.at("properties").at("lights").at("enum"), (nlohmann::json{"scene", "simple", "complex"}));
+  EXPECT_EQ(schema.at("properties").at("lights").at("enum"),
+            (nlohmann::json{"scene", "simple", "complex", "added"}));
 }
 
 }  // namespace
