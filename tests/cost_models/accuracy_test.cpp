@@ -102,7 +102,7 @@ TEST_P(Accuracy, IsWhatThisVersionStates) {
     // Two changes of GRASS at 8x contradict the text and are not fitted.
     const Signs signs = signs_of_table_2(experiment, validation.splits.front().ratios);
     EXPECT_EQ(signs.pairs, 46);
-    EXPECT_GE(signs.agree, 30) << "docs/differences.md says how many, and which are missing";
+    EXPECT_GE(signs.agree, 29) << "docs/differences.md says how many, and which are missing";
     RecordProperty("table_2_signs", signs.agree);
     EXPECT_EQ(known.size(), validation.optima.size()) << "a fold has no known optimum";
   }
