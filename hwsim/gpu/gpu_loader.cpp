@@ -124,8 +124,9 @@ class GpuFiles::Loader {
     const std::string identity = fs::weakly_canonical(*parent, error).string();
     const bool circle = std::find(chain.begin(), chain.end(), identity) != chain.end();
     if (!circle && chain.size() < kChainMax) {
-      config_.parents.insert(config_.parents.begin(),
-                             file_with_parents(*parent, Origin::Layer::parent, chain));
+      std::string id =
+          file_with_parents(*parent, Origin::Layer::parent, chain);  // adds its own parents first
+      config_.parents.insert(config_.parents.begin(), std::move(id));
       return;
     }
     Diagnostic d;
