@@ -4,16 +4,13 @@
 #include <cmath>
 
 #include "hwsim/base/units_of_measure.h"
+#include "lab/results/results.h"
 
 namespace hwsim::lab {
 namespace {
 
 constexpr double kPercent = 100.0;
 constexpr std::size_t kInfluences = 16;
-
-TableCell end_cell(const std::optional<std::array<double, 2>>& interval, std::size_t end) {
-  return interval ? TableCell{Real{(*interval)[end], 3}} : TableCell{NotApplicable{}};
-}
 
 std::uint64_t counted(const PassResult& pass, std::string_view id) {
   for (const auto& [name, count] : pass.counters)
@@ -30,32 +27,9 @@ std::uint64_t counted(const Result& result, std::string_view id) {
 }  // namespace
 
 Table point_table(const Report& report) {
-  Table table{{{"technique", "technique"},
-               {"gpu", "GPU"},
-               {"time_ms", "ms", true},
-               {"lo_ms", "90 % from", true},
-               {"hi_ms", "to", true},
-               {"support", "support"},
-               {"limiter", "limiter of the slowest pass"},
-               {"dram_mb", "DRAM MB", true},
-               {"memory_mib", "memory MiB", true},
-               {"shaded_samples", "shaded samples", true},
-               {"flip_mean", "FLIP", true},
-               {"psnr_db", "PSNR dB", true}},
-              {}};
-  for (const ReportedPoint& point : report.points) {
-    const Result& result = point.explanation.result;
-    const FrameResult& frame = result.frame;
-    const PassResult* slowest = slowest_pass(result);
-    table.rows.push_back(
-        {result.technique, result.gpu, Real{frame.time_ms, 3}, end_cell(frame.interval_ms, 0),
-         end_cell(frame.interval_ms, 1), frame.support,
-         slowest ? TableCell{slowest->limiter + " in " + slowest->name} : TableCell{NotApplicable{}},
-         Real{frame.dram_mb, 1}, Real{frame.memory_mib, 1}, frame.shaded_samples,
-         result.image ? TableCell{Real{result.image->flip_mean, 4}} : TableCell{NotApplicable{}},
-         result.image ? TableCell{Real{result.image->psnr_db, 2}} : TableCell{NotApplicable{}}});
-  }
-  return table;
+  std::vector<Result> results;
+  for (const ReportedPoint& point : report.points) results.push_back(point.explanation.result);
+  return summary_table(results);
 }
 
 Table pass_table(const ReportedPoint& point) {
