@@ -37,9 +37,10 @@ class CurveBuilder {
       : kinds_(kinds), curves_(curves) {}
 
   void access(Stay& stay, const BlockAccess& a, std::size_t missing) {
+    if (stay.last != 0) leave(stay, a.stream, missing);
+    const bool first = stay.last == 0;
     for (std::size_t k = 0; k < missing; ++k) {
-      if (stay.last != 0) leave(stay, a.stream, k);
-      stay.first[k] = stay.last == 0;
+      stay.first[k] = first;
       stay.read[k] = a.read_bytes;
       stay.write[k] = a.write_bytes;
     }
@@ -48,15 +49,18 @@ class CurveBuilder {
       stay.write[k] += a.write_bytes;
     }
   }
-  void leave(const Stay& stay, ReuseStream stream, std::size_t k) {
-    const BlockKind& kind = kinds_[index_of(stream)];
+  /// The block leaves the caches of the first `sizes` sizes.
+  void leave(const Stay& stay, ReuseStream stream, std::size_t sizes) {
+    const BlockKind kind = kinds_[index_of(stream)];
     MissCurve& curve = curves_[index_of(stream)];
-    const std::uint64_t read = moved(kind, stay.read[k]) << kind.shift;
-    curve.read_bytes[k] += read;
-    if (stay.first[k]) curve.first_read_bytes[k] += read;
-    curve.write_bytes[k] += moved(kind, stay.write[k]) << kind.shift;
-    curve.read_stays[k] += std::uint64_t{stay.read[k] > 0} << kind.shift;
-    curve.write_stays[k] += std::uint64_t{stay.write[k] > 0} << kind.shift;
+    for (std::size_t k = 0; k < sizes; ++k) {
+      const std::uint64_t read = moved(kind, stay.read[k]) << kind.shift;
+      curve.read_bytes[k] += read;
+      curve.first_read_bytes[k] += stay.first[k] ? read : 0;
+      curve.write_bytes[k] += moved(kind, stay.write[k]) << kind.shift;
+      curve.read_stays[k] += std::uint64_t{stay.read[k] > 0} << kind.shift;
+      curve.write_stays[k] += std::uint64_t{stay.write[k] > 0} << kind.shift;
+    }
   }
 
  private:
@@ -128,9 +132,7 @@ void build_curves(std::span<const BlockAccess> accesses, const BlockKinds& kinds
     present.add(i, weight);
     stay.last = i + 1;
   }
-  stays.each([&](ReuseStream stream, const Stay& stay) {
-    for (std::size_t k = 0; k < kSizes; ++k) builder.leave(stay, stream, k);
-  });
+  stays.each([&](ReuseStream stream, const Stay& stay) { builder.leave(stay, stream, kSizes); });
 }
 
 /// Fewer blocks of a stream that has too many accesses.
@@ -157,6 +159,19 @@ void count_requests(std::span<const BlockAccess> accesses, const BlockKinds& kin
       curve->requested_write_bytes += std::uint64_t{a.write_bytes} << kinds[s].shift;
     }
   }
+}
+
+/// Where the value is, or the size. Eight at a time, which compilers put on registers.
+std::size_t place_of(std::uint32_t value, std::span<const std::uint32_t> values) {
+  constexpr std::size_t kAtOnce = 8;
+  std::size_t i = 0;
+  for (; i + kAtOnce <= values.size(); i += kAtOnce) {
+    std::uint32_t equal = 0;
+    for (std::size_t k = 0; k < kAtOnce; ++k) equal |= values[i + k] == value ? 1u : 0u;
+    if (equal != 0) break;
+  }
+  while (i < values.size() && values[i] != value) ++i;
+  return i;
 }
 
 }  // namespace
@@ -194,15 +209,14 @@ ReuseProfile analyze_reuse(std::vector<BlockAccess> accesses, BlockKinds kinds, 
 
 int RecentBlocks::missing_sizes(std::uint32_t block, std::uint32_t block_bytes) {
   if (!latest_.empty() && latest_.front() == block) return sizes_below(block_bytes);  // most often
-  const auto found = std::find(latest_.begin(), latest_.end(), block);
-  const auto place = static_cast<std::size_t>(found - latest_.begin());
-  const bool missing = found == latest_.end();
+  const std::size_t place = place_of(block, latest_);
+  const bool missing = place == latest_.size();
   if (missing && latest_.size() >= std::max<std::size_t>(4, (kWindowBytes / block_bytes) >> shift_))
     latest_.back() = block;
   else if (missing)
     latest_.push_back(block);
   if (place > 0 && !latest_.empty()) {
-    const auto from = missing ? latest_.end() - 1 : found;
+    const auto from = missing ? latest_.end() - 1 : latest_.begin() + static_cast<std::ptrdiff_t>(place);
     std::rotate(latest_.begin(), from, from + 1);
   }
   if (missing) return kCacheSizes;
