@@ -1,13 +1,12 @@
 // The hot loop: one screen bin's triangles through raster, depth, shading and color, on every vector target.
 #include "pipeline/emulate/pass_context.h"
 #include "pipeline/emulate/primitive_setup.h"
+#include "pipeline/raster/triangle_setup.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
-
-#include <hwy/cache_control.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pipeline/emulate/bin_kernel.cpp"
@@ -20,14 +19,16 @@ HWY_BEFORE_NAMESPACE();
 namespace hwsim::pipeline::HWY_NAMESPACE {
 
 inline constexpr SamplePosition kPixelCenter{};
-inline constexpr std::uint32_t kTrianglesAhead = 4;
 
 class BinRunner : private BinShading {
  public:
   BinRunner(const PassContext& context, int bin, int layer, BinWorker& worker)
       : BinShading(context, layer, worker),
         bin_x_(bin % context.bins_x * kBinPx),
-        bin_y_(bin / context.bins_x * kBinPx) {
+        bin_y_(bin / context.bins_x * kBinPx),
+        grid_(context.coverage_positions, context.sample_min_x, context.sample_min_y, context.sample_max_x,
+              context.sample_max_y),
+        center_(std::span(&kPixelCenter, 1), 0, 0, 0, 0) {
     w_.tracker.start_bin(static_cast<std::uint32_t>(bin));
     w_.batch.quad_count = 0;
     w_.draw = nullptr;
@@ -35,20 +36,13 @@ class BinRunner : private BinShading {
 
   void run(const Segment& segment, int bin) {
     const auto slot = static_cast<std::size_t>(layer_ * c_.bins_x * c_.bins_y + bin);
-    for (std::size_t number = segment.first_item; number < segment.last_item; ++number) {
-      const GeometryItem& item = segment.items[number];
-      const std::uint32_t first = item.bin_start[slot];
-      const std::uint32_t last = item.bin_start[slot + 1];
-      if (first == last) continue;
+    for (const BinRun& run : segment.runs[slot]) {
+      const GeometryItem& item = segment.items[run.item];
       start_draw(c_.draws[item.draw]);
-      if (!item.points.empty()) {
-        rasterize_points(item, segment, first, last);
-        continue;
-      }
-      for (std::uint32_t i = first; i < last; ++i) {
-        if (i + kTrianglesAhead < last) prefetch(item.triangles[item.binned[i + kTrianglesAhead]]);
-        rasterize(item.triangles[item.binned[i]], segment, item);
-      }
+      if (item.points != nullptr)
+        rasterize_points(item, segment, run.first, run.last);
+      else
+        rasterize_triangles(item, segment, run.first, run.last);
     }
     flush();
   }
@@ -69,10 +63,30 @@ class BinRunner : private BinShading {
   }
 
  private:
-  /// A bin's triangles lie anywhere in memory: waiting for them was a tenth of this loop.
-  static void prefetch(const RasterTriangle& t) {
-    const char* bytes = reinterpret_cast<const char*>(&t);
-    for (std::size_t i = 0; i < sizeof(t); i += 64) hwy::Prefetch(bytes + i);
+  void rasterize_triangles(const GeometryItem& item, const Segment& segment, std::uint32_t first,
+                           std::uint32_t last) {
+    for (std::uint32_t i = first; i < last; ++i) {
+      const BinTriangle& from = item.triangles[i];
+      RasterTriangle& t = w_.triangles[w_.next_triangle];
+      const TriangleSlopes slopes =
+          set_up_depth(from.screen, from.place, c_.viewports[static_cast<std::size_t>(layer_)],
+                       w_.state->raster.conservative, t);
+      std::copy_n(from.vertex, 3, t.vertex);
+      t.draw = item.draw;
+      t.chunk = from.primitive / c_.chunk_primitives;
+      t.primitive = from.primitive;
+      t.layer = from.layer;
+      attributes_ = {&from.screen, &slopes};
+      rasterize(t, segment, item);
+      keep(t);
+    }
+  }
+
+  /// What a triangle's fragments need beyond its depth; most small triangles have none.
+  void complete(RasterTriangle& t) {
+    if (attributes_.slopes == nullptr) return;
+    set_up_attributes(*attributes_.vertices, *attributes_.slopes, t);
+    attributes_.slopes = nullptr;
   }
 
   void start_draw(const DrawInfo& draw) {
@@ -111,18 +125,19 @@ class BinRunner : private BinShading {
     const bool direct = one_pixel && c_.depth == nullptr && !w_.late_z && !keeps_primitive_masks_ &&
                         w_.program != nullptr && !w_.program->writes_depth;
     for (std::uint32_t i = first; i < last; ++i) {
-      const RasterPoint& p = item.points[item.binned[i]];
+      const RasterPoint& p = item.points[i];
       const PointPixel pixel(p, rules);
       if (direct && pixel.one_tile) {
         append_point(p, pixel, segment, item);
         continue;
       }
       for (const bool upper : {true, false}) {
-        RasterTriangle& t = w_.point_halves[w_.next_half];
+        RasterTriangle& t = w_.triangles[w_.next_triangle];
         set_up_point(p, half, upper, rules, t);
         t.draw = item.draw;
+        attributes_.slopes = nullptr;
         rasterize(t, segment, item);
-        keep_half(t);
+        keep(t);
       }
     }
   }
@@ -142,29 +157,27 @@ class BinRunner : private BinShading {
     const int x = pixel.x & ~7, y = pixel.y & ~7, lane = lane_of(pixel.x & 7, pixel.y & 7);
     const int block = tile_number(x, y), quad = lane / 4;
     if (ordered_ && holds(block, quad)) flush();
-    RasterTriangle& t = w_.point_halves[w_.next_half];
+    RasterTriangle& t = w_.triangles[w_.next_triangle];
     set_point_planes(p, pixel, t);
     const std::size_t q = place_quad(&t, &segment, &item, x, y, block, quad);
     w_.samples[q].masks[0] = static_cast<std::uint8_t>(1 << lane % 4);
-    keep_half(t);
+    keep(t);
     if (w_.batch.quad_count == kBatchQuads) flush();
   }
 
-  /// A half that the batch has quads of stays until they are shaded: no more than one for each of its quads.
-  void keep_half(const RasterTriangle& t) {
+  /// A triangle that the batch has quads of stays until they are shaded: no more than one for each of its
+  /// quads.
+  void keep(const RasterTriangle& t) {
     const auto quads = static_cast<std::size_t>(w_.batch.quad_count);
     if (quads != 0 && w_.batch.triangle[quads - 1] == &t)
-      w_.next_half = (w_.next_half + 1) % (kBatchQuads + 1);
+      w_.next_triangle = (w_.next_triangle + 1) % (kBatchQuads + 1);
   }
 
-  void rasterize(const RasterTriangle& t, const Segment& segment, const GeometryItem& item) {
+  void rasterize(RasterTriangle& t, const Segment& segment, const GeometryItem& item) {
     w_.current_chunk = t.chunk;
     w_.tracker.start_primitive(t.primitive);
     PassCounters& n = w_.counters();
-    const bool conservative = w_.state->raster.conservative;
-    TileCoverage coverage = conservative ? TileCoverage(t, std::span(&kPixelCenter, 1), 0, 0, 0, 0)
-                                         : TileCoverage(t, c_.coverage_positions, c_.sample_min_x,
-                                                        c_.sample_min_y, c_.sample_max_x, c_.sample_max_y);
+    TileCoverage coverage(t, w_.state->raster.conservative ? center_ : grid_);
     const int left = std::max<int>(t.min_x, bin_x_) & ~7, right = std::min<int>(t.max_x, bin_x_ + kBinPx - 1);
     const int top = std::max<int>(t.min_y, bin_y_) & ~7, bottom = std::min<int>(t.max_y, bin_y_ + kBinPx - 1);
     SampleMasks masks;
@@ -190,7 +203,9 @@ class BinRunner : private BinShading {
         if (!w_.late_z && !test_early(t, plane, x, y, coarse, masks, n)) continue;
         if (follows_map_ && !w_.late_z) insert_tile(t, x, y, masks.lanes, primitive_masks_.lanes);
         if (w_.early_reject && !reject_early(t, plane, x, y, coarse, masks, n)) continue;
-        if (w_.program != nullptr) append_tile(&t, &segment, &item, x, y, masks, n);
+        if (w_.program == nullptr) continue;
+        complete(t);
+        append_tile(&t, &segment, &item, x, y, masks, n);
       }
     }
   }
@@ -223,15 +238,6 @@ class BinRunner : private BinShading {
 
   std::uint64_t lanes_inside(int x, int y) const {
     return lanes_within(0, 0, c_.width - 1 - x, c_.height - 1 - y);
-  }
-
-  /// Lanes of a tile in a rectangle of its pixels, both ends included.
-  static std::uint64_t lanes_within(int left, int top, int right, int bottom) {
-    std::uint64_t inside = 0;
-    for (int lane = 0; lane < kBlockLanes; ++lane)
-      if (lane_x(lane) >= left && lane_x(lane) <= right && lane_y(lane) >= top && lane_y(lane) <= bottom)
-        inside |= std::uint64_t{1} << lane;
-    return inside;
   }
 
   /// Stencil and depth before shading; false when no sample is left.
@@ -289,6 +295,13 @@ class BinRunner : private BinShading {
   }
 
   const int bin_x_, bin_y_;
+  const SampleGrid grid_;    ///< where coverage is found
+  const SampleGrid center_;  ///< the same for conservative rasterization
+  /// The vertices and slopes of the triangle at hand, until complete() has used them.
+  struct Attributes {
+    const ScreenVertex (*vertices)[3] = nullptr;
+    const TriangleSlopes* slopes = nullptr;
+  } attributes_;
 };
 
 void run_bin_target(const PassContext& context, const Segment& segment, int bin, BinWorker& worker) {

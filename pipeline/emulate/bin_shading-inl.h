@@ -98,7 +98,7 @@ class BinShading : protected BinColor {
     batch.front_facing.fill(t->front_facing != w_.draw->mirrored);
     const auto stride = static_cast<std::uint32_t>(w_.draw->batch->raster_scalars());
     for (std::size_t v = 0; v < 3; ++v)
-      batch.varyings[v].fill(varyings_of(t->vertex[v], stride, *segment, *item));
+      batch.varyings[v].fill(segment->varyings_of(*item, t->vertex[v], stride));
   }
 
   void apply_output_mask(FragmentBatch& batch, int first_sample, int last_sample, SampleMasks& kept) {
@@ -191,16 +191,8 @@ class BinShading : protected BinColor {
     batch.front_facing[q] = t->front_facing != w_.draw->mirrored;
     const auto stride = static_cast<std::uint32_t>(w_.draw->batch->raster_scalars());
     for (std::size_t v = 0; v < 3; ++v)
-      batch.varyings[v][q] = varyings_of(t->vertex[v], stride, *segment, *item);
+      batch.varyings[v][q] = segment->varyings_of(*item, t->vertex[v], stride);
     return q;
-  }
-
-  static const float* varyings_of(std::uint32_t vertex, std::uint32_t stride, const Segment& segment,
-                                  const GeometryItem& item) {
-    if ((vertex & kClippedVertexBit) != 0)
-      return item.clipped_varyings.data() + (vertex & ~kClippedVertexBit) * stride;
-    return segment.varyings.data() + segment.varying_base[item.draw - segment.first_draw] +
-           std::size_t{vertex} * stride;
   }
 
   void flush() {

@@ -4,9 +4,14 @@
 
 namespace hwsim::pipeline {
 
-/// Layer by layer bins in order, triangles in submission order within each.
-void bin_triangles(const PassContext& context, GeometryItem& item);
-/// The same, of an item of points: a point is in the bins of its halves.
-void bin_points(const PassContext& context, GeometryItem& item);
+/// Copies what was built of an item into the arena, bin by bin, in submission order within each. A triangle
+/// is in the bins that it may touch, a point in those of its halves.
+void sort_into_bins(const PassContext& context, GeometryItem& item, Arena& arena);
+
+/// Lists the runs of each bin, item by item, and the bins that have any, in order.
+void list_bins(const PassContext& context, Segment& segment);
+
+/// The bins with most primitives first, so that no thread is left with one of them at the end.
+void sort_bins_by_work(const PassContext& context, Segment& segment);
 
 }  // namespace hwsim::pipeline

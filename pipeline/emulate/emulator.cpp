@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "pipeline/base/parallel.h"
+#include "pipeline/emulate/binning.h"
 #include "pipeline/emulate/color_traffic.h"
 #include "pipeline/emulate/depth_traffic.h"
 #include "pipeline/emulate/frame_memory.h"
@@ -35,6 +36,7 @@ class FrameRunner {
         materials_(graph.scene(), textures_),
         memory_(graph, compiled),
         workers_(static_cast<std::size_t>(std::max(1, options.jobs))),
+        fetches_(functional.post_transform_cache_entries, options.exact_reuse),
         heat_blocks_x_((graph.width() + kBlockPx - 1) / kBlockPx) {
     const int heat_blocks_y = (graph.height() + kBlockPx - 1) / kBlockPx;
     heat_.resize(static_cast<std::size_t>(heat_blocks_x_ * heat_blocks_y) * kBlockLanes);
@@ -261,26 +263,28 @@ class FrameRunner {
                   c);
     count_commands(graph_, pass, c, work.barrier_before, workers_.front().chunks);
     count_inputs(c, workers_.front().chunks);
-    const GeometryOptions geometry{options_.jobs, functional_.post_transform_cache_entries,
-                                   options_.skip.frustum};
     std::uint32_t first = 0;
     while (first < c.draws.size()) {
       std::uint32_t last = first;
       const std::uint64_t most = std::max<std::uint64_t>(1, kSegmentTriangles / c.viewports.size());
       for (std::uint64_t n = 0; last < c.draws.size() && n < most; ++last)
         n += c.draws[last].primitive_count();
-      Segment segment = make_segment(c, first, last);
-      skipped_clusters_ += run_vertices(c, segment, geometry, workers_);
-      while (next_items(c, segment)) {
-        run_primitives(c, segment, options_.jobs, workers_);
-        parallel_for(static_cast<std::size_t>(c.bins_x * c.bins_y), bin_jobs(pass),
-                     [&](std::size_t bin, int worker) {
-                       run_bin(c, segment, static_cast<int>(bin), workers_[static_cast<std::size_t>(worker)]);
-                     });
-      }
+      start_segment(c, first, last, segment_);
+      skipped_clusters_ +=
+          run_vertices(c, segment_, {options_.jobs, options_.skip.frustum}, workers_, fetches_);
+      while (next_items(c, segment_)) run_items(c, bin_jobs(pass));
       first = last;
     }
+    end_segments(segment_, workers_);
     finish_workers(pass, work);
+  }
+
+  void run_items(const PassContext& c, int jobs) {
+    run_primitives(c, segment_, options_.jobs, workers_);
+    if (jobs > 1) sort_bins_by_work(c, segment_);
+    parallel_for(segment_.bins.size(), jobs, [&](std::size_t i, int worker) {
+      run_bin(c, segment_, static_cast<int>(segment_.bins[i]), workers_[static_cast<std::size_t>(worker)]);
+    });
   }
 
   /// One thread where what is stored depends on the order, so that the result does not depend on the threads.
@@ -383,10 +387,14 @@ class FrameRunner {
 
   Image read_heat() const {
     Image out(graph_.width(), graph_.height());
-    for (int y = 0; y < out.height; ++y)
-      for (int x = 0; x < out.width; ++x)
-        out.at(x, y).x = static_cast<float>(heat_[static_cast<std::size_t>(
-            ((y >> 3) * heat_blocks_x_ + (x >> 3)) * kBlockLanes + lane_of(x & 7, y & 7))]);
+    parallel_for(static_cast<std::size_t>((out.height + kBlockPx - 1) / kBlockPx), options_.jobs,
+                 [&](std::size_t row, int) {
+                   const int first = static_cast<int>(row) * kBlockPx;
+                   for (int y = first; y < std::min(first + kBlockPx, out.height); ++y)
+                     for (int x = 0; x < out.width; ++x)
+                       out.at(x, y).x = static_cast<float>(heat_[static_cast<std::size_t>(
+                           ((y >> 3) * heat_blocks_x_ + (x >> 3)) * kBlockLanes + lane_of(x & 7, y & 7))]);
+                 });
     return out;
   }
 
@@ -400,6 +408,8 @@ class FrameRunner {
   DepthPlaneView planes_;                           ///< what the pass at hand reads
   std::vector<SamplePosition> coverage_positions_;  ///< likewise
   std::vector<BinWorker> workers_;
+  Segment segment_;
+  VertexFetches fetches_;
   int heat_blocks_x_;
   std::vector<std::uint32_t> heat_;
   std::uint64_t skipped_clusters_ = 0;

@@ -89,9 +89,12 @@ MaterialViews::MaterialViews(const Scene& scene, const TextureStore& textures) {
     std::vector<VertexRange>& of_mesh = ranges_.emplace_back();
     for (const Mesh::Part& part : mesh.parts) {
       if (!mesh.colors.empty()) views_[static_cast<std::size_t>(part.material)].has_colors = true;
-      const auto first = mesh.indices.begin() + part.first_index;
-      const auto [low, high] = std::minmax_element(first, first + part.index_count);
-      of_mesh.push_back(part.index_count == 0 ? VertexRange{} : VertexRange{*low, *high - *low + 1});
+      std::uint32_t low = ~0u, high = 0;  // a loop that compilers put on registers: minmax_element they don't
+      for (std::uint32_t i = part.first_index; i < part.first_index + part.index_count; ++i) {
+        low = std::min(low, mesh.indices[i]);
+        high = std::max(high, mesh.indices[i]);
+      }
+      of_mesh.push_back(part.index_count == 0 ? VertexRange{} : VertexRange{low, high - low + 1});
     }
   }
 }

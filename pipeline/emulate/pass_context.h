@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/base/arena.h"
 #include "pipeline/batch/geometry_batch.h"
 #include "pipeline/emulate/emulator.h"
 #include "pipeline/emulate/segment.h"
@@ -53,9 +54,12 @@ struct BinWorker {
       primitive_samples;                              ///< before depth and stencil, where they are asked for
   FragmentBatch sample_batch;                         ///< sample-rate shading: the quads that have the sample
   std::array<std::int32_t, kBatchQuads> sample_quad;  ///< by quad of sample_batch: its number in `batch`
-  /// Halves of points, for the quads of `batch`, and one more that is set up.
-  std::array<RasterTriangle, kBatchQuads + 1> point_halves;
-  std::size_t next_half = 0;
+  /// Triangles that the quads of `batch` belong to, and one more that is set up.
+  std::array<RasterTriangle, kBatchQuads + 1> triangles;
+  std::size_t next_triangle = 0;
+
+  BuiltPrimitives built;  ///< what the item at hand comes to
+  Arena arena;            ///< holds what the segment's items hold
 
   ResourceView resources;  ///< the pass's, with the trackers of this worker
   AccessTracker tracker;

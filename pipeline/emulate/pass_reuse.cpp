@@ -5,8 +5,6 @@
 namespace hwsim::pipeline {
 namespace {
 
-constexpr int kReuseShiftMax = 5;  // 1 block in 32: the sampling error is in docs/hardware_model.md
-
 std::uint64_t scaled(std::uint64_t value, std::uint64_t part, std::uint64_t whole) {
   return static_cast<std::uint64_t>(static_cast<__uint128_t>(std::min(value, whole)) * part / whole);
 }

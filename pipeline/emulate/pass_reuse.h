@@ -11,6 +11,9 @@
 
 namespace hwsim::pipeline {
 
+/// The least sample: 1 block in 32, of all vertex data (its sampling error is in docs/hardware_model.md).
+inline constexpr int kReuseShiftMax = 5;
+
 /// First 64-byte line of each sampled image: they are numbered behind the `texture_lines` of all textures.
 std::array<std::uint32_t, kMaxImageSlots> image_lines(const FrameGraph& graph, const Pass& pass,
                                                       std::uint64_t texture_lines);

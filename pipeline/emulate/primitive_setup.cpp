@@ -10,6 +10,11 @@ bool in_guard_band(const double* p, const GuardBand& band) {
          p[1] >= band.min_y * p[3] && p[1] <= band.max_y * p[3];
 }
 
+void prefetch(const ShadedVertex& v) {
+  __builtin_prefetch(&v.clip_position);
+  __builtin_prefetch(&v.needs_clip);  // may lie in the line after
+}
+
 }  // namespace
 
 SetupRules setup_rules(const PassContext& c, const DrawInfo& draw) {
@@ -69,7 +74,50 @@ void PrimitiveSetup::add_triangle(std::uint32_t v0, std::uint32_t v1, std::uint3
   if (a.needs_clip || b.needs_clip || c.needs_clip) return add_clipped({v0, v1, v2});
   n.stats.clipping_primitives += 1;
   const ScreenVertex screen[3] = {a.screen, b.screen, c.screen};
-  set_up(screen, {kept_vertex(v0), kept_vertex(v1), kept_vertex(v2)});
+  place(screen, {kept_vertex(v0), kept_vertex(v1), kept_vertex(v2)});
+}
+
+void PrimitiveSetup::add_triangles(const std::uint32_t* indices, std::uint32_t count,
+                                   std::uint32_t first_vertex) {
+  if (c_.viewports.size() == 1) {
+    const std::array<std::uint64_t, 4> results = place_triangles(indices, count, first_vertex);
+    for (std::size_t r = 0; r < results.size(); ++r) {
+      this->count(static_cast<SetupResult>(r), results[r]);
+      counters_->stats.clipping_invocations += results[r];
+      counters_->stats.clipping_primitives += results[r];
+    }
+    return;
+  }
+  for (std::uint32_t i = 0; i < count; ++i, ++primitive_, indices += 3)
+    add_triangle(indices[0] - first_vertex, indices[1] - first_vertex, indices[2] - first_vertex);
+}
+
+/// The same for one viewport. Returns how many triangles met each result, but for those that needed clipping:
+/// these are counted already.
+std::array<std::uint64_t, 4> PrimitiveSetup::place_triangles(const std::uint32_t* indices,
+                                                             std::uint32_t count,
+                                                             std::uint32_t first_vertex) {
+  constexpr std::uint32_t kAhead = 3 * 12;  // indices: their vertices lie anywhere
+  std::array<std::uint64_t, 4> results{};
+  std::vector<BinTriangle>& out = item_.built->triangles;
+  const ShadedVertex* const vertices = source_.vertices;
+  for (std::uint32_t i = 0; i < count; ++i, ++primitive_, indices += 3) {
+    const std::uint32_t v0 = indices[0] - first_vertex, v1 = indices[1] - first_vertex,
+                        v2 = indices[2] - first_vertex;
+    if (3 * (count - i) > kAhead + 3)
+      for (std::uint32_t k = 0; k < 3; ++k) prefetch(vertices[indices[kAhead + k] - first_vertex]);
+    const ShadedVertex &a = vertices[v0], &b = vertices[v1], &c = vertices[v2];
+    if ((a.outcode & b.outcode & c.outcode) != 0 || a.needs_clip || b.needs_clip || c.needs_clip) {
+      add_triangle(v0, v1, v2);
+      continue;
+    }
+    TrianglePlace place;
+    const SetupResult result = place_triangle(a.screen, b.screen, c.screen, rules_, place);
+    results[static_cast<std::size_t>(result)] += 1;
+    if (result == SetupResult::drawn)
+      out.push_back({{a.screen, b.screen, c.screen}, {v0, v1, v2}, primitive_, place, 0});
+  }
+  return results;
 }
 
 ClipVertex PrimitiveSetup::clip_vertex(std::uint32_t v, std::size_t corner) const {
@@ -85,16 +133,23 @@ void PrimitiveSetup::cull_outside() {
 }
 
 std::uint32_t PrimitiveSetup::own_vertices() const {
-  return static_cast<std::uint32_t>(source_.scalars == 0 ? 0
-                                                         : item_.clipped_varyings.size() / source_.scalars);
+  return static_cast<std::uint32_t>(source_.scalars == 0 ? 0 : item_.own_varyings.size() / source_.scalars);
 }
 
 std::uint32_t PrimitiveSetup::kept_vertex(std::uint32_t v) {
   if (!source_.temporary) return v;
-  const std::uint32_t kept = own_vertices() | kClippedVertexBit;
+  const std::uint32_t kept = own_vertices() | kOwnVertexBit;
   const float* from = source_.varyings + v * source_.stride;
-  item_.clipped_varyings.insert(item_.clipped_varyings.end(), from, from + source_.scalars);
+  item_.own_varyings.insert(item_.own_varyings.end(), from, from + source_.scalars);
   return kept;
+}
+
+void PrimitiveSetup::append_varyings(const Vertices& v, const std::array<double, 3>& weights) {
+  for (std::size_t k = 0; k < source_.scalars; ++k) {
+    double value = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) value += weights[i] * source_.varyings[v[i] * source_.stride + k];
+    item_.own_varyings.push_back(static_cast<float>(value));
+  }
 }
 
 void PrimitiveSetup::add_clipped(const Vertices& v) {
@@ -105,51 +160,38 @@ void PrimitiveSetup::add_clipped(const Vertices& v) {
   for (int i = 0; i < count; ++i) usable = usable && polygon[static_cast<std::size_t>(i)].position[3] > 1e-30;
   if (!usable) return cull_outside();
   const std::uint32_t first = own_vertices();
-  for (int i = 0; i < count; ++i) append_varyings(v, polygon[static_cast<std::size_t>(i)].weights);
-  for (int i = 1; i + 1 < count; ++i) {
-    const int fan[3] = {0, i, i + 1};
-    ScreenVertex screen[3];
-    Vertices index;
-    for (std::size_t k = 0; k < 3; ++k) {
-      screen[k] = to_screen(polygon[static_cast<std::size_t>(fan[k])].position.data(), c_.width, c_.height);
-      index[k] = (first + static_cast<std::uint32_t>(fan[k])) | kClippedVertexBit;
-    }
-    counters_->stats.clipping_primitives += 1;
-    set_up(screen, index);
+  std::array<ScreenVertex, kMaxClippedVertices> corner;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    corner[i] = to_screen(polygon[i].position.data(), c_.width, c_.height);
+    append_varyings(v, polygon[i].weights);
   }
-}
-
-void PrimitiveSetup::append_varyings(const Vertices& v, const std::array<double, 3>& weights) {
-  for (std::size_t k = 0; k < source_.scalars; ++k) {
-    double value = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) value += weights[i] * source_.varyings[v[i] * source_.stride + k];
-    item_.clipped_varyings.push_back(static_cast<float>(value));
+  const auto own = [first](std::size_t i) { return (first + static_cast<std::uint32_t>(i)) | kOwnVertexBit; };
+  for (std::size_t i = 1; i + 1 < static_cast<std::size_t>(count); ++i) {
+    counters_->stats.clipping_primitives += 1;
+    const ScreenVertex screen[3] = {corner[0], corner[i], corner[i + 1]};
+    place(screen, {own(0), own(i), own(i + 1)});
   }
 }
 
 // Setup and rasterization once for each viewport; what comes before, once.
-void PrimitiveSetup::set_up(const ScreenVertex (&screen)[3], const Vertices& v) {
+void PrimitiveSetup::place(const ScreenVertex (&screen)[3], const Vertices& v) {
   const std::size_t layers = c_.viewports.size();
-  if (layers == 1) {
-    RasterTriangle t;
-    finish(set_up_triangle(screen, rules_, t), v, t);
-    return;
-  }
-  std::array<RasterTriangle, kMaxViewports> triangles;
+  std::array<TrianglePlace, kMaxViewports> places;
   std::array<SetupResult, kMaxViewports> results;
-  set_up_triangle(screen, rules_, c_.viewports, std::span(triangles).first(layers),
-                  std::span(results).first(layers));
-  for (std::size_t l = 0; l < layers; ++l) finish(results[l], v, triangles[l]);
-}
-
-void PrimitiveSetup::finish(SetupResult result, const Vertices& v, RasterTriangle& t) {
-  count(result);
-  if (result != SetupResult::drawn) return;
-  for (std::size_t i = 0; i < 3; ++i) t.vertex[i] = v[i];
-  t.draw = item_.draw;
-  t.chunk = primitive_ / c_.chunk_primitives;
-  t.primitive = primitive_;
-  item_.triangles.push_back(t);
+  if (layers == 1)
+    results[0] = place_triangle(screen[0], screen[1], screen[2], rules_, places[0]);
+  else
+    place_triangle(screen, rules_, c_.viewports, std::span(places).first(layers),
+                   std::span(results).first(layers));
+  for (std::size_t l = 0; l < layers; ++l) {
+    count(results[l]);
+    if (results[l] == SetupResult::drawn)
+      item_.built->triangles.push_back({{screen[0], screen[1], screen[2]},
+                                        {v[0], v[1], v[2]},
+                                        primitive_,
+                                        places[l],
+                                        static_cast<std::int16_t>(l)});
+  }
 }
 
 void PrimitiveSetup::count(SetupResult result, std::uint64_t triangles) {

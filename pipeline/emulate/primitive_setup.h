@@ -34,11 +34,15 @@ class PrimitiveSetup {
   /// Where the following primitives' work is charged, and the number they carry.
   void start_primitive(std::uint32_t primitive, PassCounters& counters);
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+  /// `count` triangles of vertices given by `indices` less `first_vertex`, from the primitive started on.
+  void add_triangles(const std::uint32_t* indices, std::uint32_t count, std::uint32_t first_vertex);
   void add_point(std::uint32_t v);
   void add_line(std::uint32_t a, std::uint32_t b);
 
  private:
   using Vertices = std::array<std::uint32_t, 3>;
+  std::array<std::uint64_t, 4> place_triangles(const std::uint32_t* indices, std::uint32_t count,
+                                               std::uint32_t first_vertex);
   void keep_point(const ScreenVertex& center, std::uint32_t v);
   void add_quad(const std::array<ScreenVertex, 4>& corner, const std::array<std::uint32_t, 4>& v);
   void add_clipped(const Vertices& v);
@@ -47,8 +51,7 @@ class PrimitiveSetup {
   std::uint32_t own_vertices() const;
   std::uint32_t kept_vertex(std::uint32_t v);
   void append_varyings(const Vertices& v, const std::array<double, 3>& weights);
-  void set_up(const ScreenVertex (&screen)[3], const Vertices& v);
-  void finish(SetupResult result, const Vertices& v, RasterTriangle& triangle);
+  void place(const ScreenVertex (&screen)[3], const Vertices& v);
   void count(SetupResult result, std::uint64_t triangles = 1);
 
   const PassContext& c_;

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "hwsim/trace/counters.h"
+#include "pipeline/base/zeroed_vector.h"
 #include "pipeline/batch/fragment_batch.h"
 #include "pipeline/graph/frame_graph.h"
+#include "pipeline/raster/triangle_setup.h"
 
 namespace hwsim::pipeline {
 
@@ -48,8 +50,24 @@ struct DrawInfo {
   }
 };
 
-/// Set high in RasterTriangle::vertex: the vertex was made by clipping and lies in the item's own array.
-inline constexpr std::uint32_t kClippedVertexBit = 0x80000000u;
+/// Set high in a vertex number: the vertex was made by clipping or by a geometry shader, and is the item's
+/// own.
+inline constexpr std::uint32_t kOwnVertexBit = 0x80000000u;
+
+/// A triangle on its way to its bins; it is set up where it is rasterized.
+struct BinTriangle {
+  ScreenVertex screen[3];
+  std::uint32_t vertex[3];  ///< among the draw's, or the item's own
+  std::uint32_t primitive;  ///< number in the pass, in submission order
+  TrianglePlace place;
+  std::int16_t layer;  ///< layer of the attachments
+};
+
+/// What a worker builds of an item, before it is sorted by bin.
+struct BuiltPrimitives {
+  std::vector<BinTriangle> triangles;
+  std::vector<RasterPoint> points;  ///< what a draw of points has in place of triangles
+};
 
 /// Up to kItemPrimitives primitives of one draw.
 inline constexpr std::uint32_t kItemPrimitives = kClusterTriangles;
@@ -58,12 +76,20 @@ struct GeometryItem {
   std::uint32_t first_primitive = 0, primitive_count = 0;  ///< within the draw
   bool outside = false;                                    ///< no part of it is in the view volume
 
-  std::vector<RasterTriangle> triangles;
-  std::vector<RasterPoint> points;  ///< what a draw of points has in place of triangles
-  std::vector<float> clipped_varyings;
-  std::vector<std::uint32_t>
-      binned;  ///< triangle or point numbers, sorted by bin, in submission order within a bin
-  std::vector<std::uint32_t> bin_start;  ///< bins + 1 offsets into `binned`
+  BuiltPrimitives* built = nullptr;  ///< set while it is built
+  std::size_t built_triangles = 0;   ///< how many that were; a point is two
+  std::vector<float> own_varyings;   ///< varyings of the vertices that are its own
+
+  // Copies by bin, in submission order within a bin: of the bins of a rectangle, layer by layer.
+  int bin_left = 0, bin_top = 0, bins_x = 0, bins_y = 0;
+  const std::uint32_t* bin_start = nullptr;  ///< for each bin and one more, offsets into one of these
+  const BinTriangle* triangles = nullptr;
+  const RasterPoint* points = nullptr;
+};
+
+/// The primitives of an item in one bin.
+struct BinRun {
+  std::uint32_t item, first, last;  ///< a number among the segment's, and a range of what it holds
 };
 
 /// A vertex after the vertex shader.
@@ -77,11 +103,19 @@ struct ShadedVertex {
 struct Segment {
   std::vector<GeometryItem> items;
   std::size_t first_item = 0, last_item = 0;  ///< those that are built now
-  std::vector<ShadedVertex> vertices;
-  std::vector<float> varyings;  ///< all draws'; stride: varying_scalars of the draw's vertex program
+  ZeroedVector<ShadedVertex> vertices;        ///< room for these, or for those of a larger segment before
+  ZeroedVector<float> varyings;  ///< all draws'; stride: varying_scalars of the draw's vertex program
   std::uint32_t first_draw = 0;
   std::vector<std::uint32_t> vertex_base;  ///< by draw of the segment: its first element of `vertices`
   std::vector<std::size_t> varying_base;   ///< likewise of `varyings`
+
+  std::vector<std::vector<BinRun>> runs;  ///< by layer and bin: what the items built now have there
+  std::vector<std::uint32_t> bins;        ///< those that have any
+
+  const float* varyings_of(const GeometryItem& item, std::uint32_t vertex, std::uint32_t stride) const {
+    if ((vertex & kOwnVertexBit) != 0) return item.own_varyings.data() + (vertex & ~kOwnVertexBit) * stride;
+    return varyings.data() + varying_base[item.draw - first_draw] + std::size_t{vertex} * stride;
+  }
 };
 
 }  // namespace hwsim::pipeline

@@ -13,7 +13,7 @@ void PrimitiveSetup::add_quad(const std::array<ScreenVertex, 4>& corner,
   counters_->stats.clipping_primitives += 1;
   for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
     const ScreenVertex screen[3] = {corner[0], corner[i], corner[i + 1]};
-    set_up(screen, {v[0], v[i], v[i + 1]});
+    place(screen, {v[0], v[i], v[i + 1]});
   }
 }
 
@@ -47,7 +47,7 @@ void PrimitiveSetup::keep_point(const ScreenVertex& center, std::uint32_t v) {
   if (!find_point_bounds(p, half, rules_, bounds)) return count(SetupResult::sample_miss, 2);
   count(SetupResult::drawn, 2);
   p.vertex = kept_vertex(v);
-  item_.points.push_back(p);
+  item_.built->points.push_back(p);
 }
 
 void PrimitiveSetup::add_line(std::uint32_t a, std::uint32_t b) {
@@ -77,7 +77,7 @@ void PrimitiveSetup::add_line(std::uint32_t a, std::uint32_t b) {
     v.y += y;
     return v;
   };
-  const std::uint32_t i = first | kClippedVertexBit, j = (first + 1) | kClippedVertexBit;
+  const std::uint32_t i = first | kOwnVertexBit, j = (first + 1) | kOwnVertexBit;
   add_quad({moved(p, nx, ny), moved(q, nx, ny), moved(q, -nx, -ny), moved(p, -nx, -ny)}, {i, j, j, i});
 }
 

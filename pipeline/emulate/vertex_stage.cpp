@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
-#include <map>
 
 #include "pipeline/base/parallel.h"
+#include "pipeline/emulate/pass_reuse.h"
 #include "pipeline/emulate/primitive_setup.h"
 
 namespace hwsim::pipeline {
@@ -154,62 +154,75 @@ std::vector<VertexTask> vertex_tasks(const PassContext& context, const Segment& 
   return tasks;
 }
 
-/// body(place of the index, vertex) for each miss of a FIFO post-transform cache.
-template <class Body>
-void for_each_cache_miss(std::span<const std::uint32_t> indices, std::size_t vertices, int cache_entries,
-                         Body&& body) {
-  std::vector<std::uint64_t> loaded(vertices, 0);  // 1 + the miss by which the vertex came in last
-  std::uint64_t total = 0;
-  for (std::uint32_t i = 0; i < indices.size(); ++i) {
-    const std::uint32_t vertex = indices[i];
-    std::uint64_t& at = loaded[vertex];
-    if (at != 0 && total - at < static_cast<std::uint64_t>(cache_entries)) continue;
-    at = ++total;
-    body(i, vertex);
+/// A FIFO post-transform cache in front of vertices [first, first + count).
+class VertexCache {
+ public:
+  VertexCache(std::uint32_t first, std::size_t count, int entries)
+      : first_(first),
+        entries_(static_cast<std::uint32_t>(entries)),
+        loaded_(count, 0u - entries_) {}  // so long ago that they are gone
+
+  /// Writes the places of the indices that miss to `places`, as long as the indices; returns their number.
+  /// Without branches: whether an index misses is hard to foretell.
+  std::size_t find_misses(std::span<const std::uint32_t> indices, std::uint32_t* places) {
+    constexpr std::size_t kAhead = 32;
+    std::size_t found = 0;
+    std::uint32_t total = total_;
+    for (std::uint32_t i = 0; i < indices.size(); ++i) {
+      if (i + kAhead < indices.size()) __builtin_prefetch(&loaded_[indices[i + kAhead] - first_]);
+      std::uint32_t& loaded = loaded_[indices[i] - first_];
+      // The sign of a difference of 64 bits.
+      const auto miss =
+          static_cast<std::uint32_t>((std::uint64_t{entries_} - 1 - std::uint64_t{total - loaded}) >> 63);
+      total += miss;
+      loaded ^= (loaded ^ total) & (0u - miss);
+      places[found] = i;
+      found += miss;
+    }
+    total_ = total;
+    return found;
   }
-}
 
-/// A read of a sampled line by a primitive of the part.
-struct LineRead {
-  std::uint32_t primitive, line, bytes;
+ private:
+  const std::uint32_t first_, entries_;
+  std::uint32_t total_ = 0;            // misses so far
+  std::vector<std::uint32_t> loaded_;  // by which miss the vertex came in last
 };
 
-struct PartFetch {
-  std::vector<std::uint32_t> misses;  ///< one number a run of kItemPrimitives primitives
-  std::vector<LineRead> reads;        ///< by primitive
+/// Sampled lines of vertices that come whole, over one line or more.
+class VertexLines {
+ public:
+  VertexLines(const DrawInfo& draw, std::uint32_t first_line, int shift)
+      : vertex_bytes_(static_cast<std::uint32_t>(draw.mesh->vertex_bytes)),
+        first_line_(first_line),
+        shift_(shift) {}
+
+  void read(std::uint32_t primitive, std::uint32_t vertex, std::vector<LineRead>& reads) const {
+    const std::uint64_t start = std::uint64_t{vertex} * vertex_bytes_, end = start + vertex_bytes_;
+    for (std::uint64_t line = start / kLineBytes; line * kLineBytes < end; ++line) {
+      const std::uint32_t number = first_line_ + static_cast<std::uint32_t>(line);
+      if (!is_sampled(number, shift_)) continue;
+      const std::uint64_t from = std::max(start, line * kLineBytes),
+                          to = std::min(end, (line + 1) * kLineBytes);
+      reads.push_back({primitive, number, static_cast<std::uint32_t>(to - from)});
+    }
+  }
+
+ private:
+  const std::uint32_t vertex_bytes_, first_line_;
+  const int shift_;
 };
 
-/// Vertices come whole, over one line or more; indices in order.
-PartFetch fetch_part(const DrawInfo& draw, std::uint32_t first_line, int cache_entries, int shift) {
-  const std::uint32_t per_primitive = draw.indices_per_primitive();
-  const auto vertex_bytes = static_cast<std::uint32_t>(draw.mesh->vertex_bytes);
-  PartFetch fetch;
-  fetch.misses.assign((draw.index_count / per_primitive + kItemPrimitives - 1) / kItemPrimitives + 1, 0);
-  for_each_cache_miss(
-      {draw.indices, draw.index_count}, draw.mesh->positions.size(), cache_entries,
-      [&](std::uint32_t i, std::uint32_t vertex) {
-        fetch.misses[i / (per_primitive * kItemPrimitives)] += 1;
-        const std::uint64_t start = std::uint64_t{vertex} * vertex_bytes, end = start + vertex_bytes;
-        for (std::uint64_t line = start / kLineBytes; line * kLineBytes < end; ++line) {
-          const std::uint32_t number = first_line + static_cast<std::uint32_t>(line);
-          if (!is_sampled(number, shift)) continue;
-          const std::uint64_t from = std::max(start, line * kLineBytes),
-                              to = std::min(end, (line + 1) * kLineBytes);
-          fetch.reads.push_back({i / per_primitive, number, static_cast<std::uint32_t>(to - from)});
-        }
-      });
-  const auto index_bytes = static_cast<std::uint32_t>(draw.index_bytes);
-  const std::uint32_t in_line = kLineBytes / index_bytes;
+/// Lines of indices, which come in order.
+void read_indices(const DrawInfo& draw, std::uint32_t first_line, int shift, std::vector<LineRead>& reads) {
+  const std::uint32_t in_line = kLineBytes / static_cast<std::uint32_t>(draw.index_bytes);
   for (std::uint32_t i = 0; i < draw.index_count; i += in_line) {
     const std::uint32_t number = ~first_line - (draw.first_index + i) / in_line;
-    if (is_sampled(number, shift)) fetch.reads.push_back({i / per_primitive, number, kLineBytes});
+    if (is_sampled(number, shift)) reads.push_back({i / draw.indices_per_primitive(), number, kLineBytes});
   }
-  std::stable_sort(fetch.reads.begin(), fetch.reads.end(),
-                   [](const LineRead& a, const LineRead& b) { return a.primitive < b.primitive; });
-  return fetch;
 }
 
-void track_reads(const DrawInfo& draw, const GeometryItem& item, const PartFetch& fetch,
+void track_reads(const DrawInfo& draw, const GeometryItem& item, const VertexFetch& fetch,
                  AccessTracker& tracker) {
   const auto before = [](const LineRead& read, std::uint32_t primitive) {
     return read.primitive < primitive;
@@ -222,15 +235,62 @@ void track_reads(const DrawInfo& draw, const GeometryItem& item, const PartFetch
   }
 }
 
+/// body(first place of a run of kItemPrimitives primitives, places within it that miss) for each run.
+template <class Body>
+void for_each_run(std::span<const std::uint32_t> indices, std::uint32_t indices_per_primitive,
+                  VertexCache cache, Body&& body) {
+  const std::size_t run = std::size_t{indices_per_primitive} * kItemPrimitives;
+  std::vector<std::uint32_t> places(std::min(run, indices.size()));
+  for (std::size_t first = 0; first < indices.size(); first += run) {
+    const std::size_t count = std::min(run, indices.size() - first);
+    const std::size_t found = cache.find_misses(indices.subspan(first, count), places.data());
+    body(first, std::span<const std::uint32_t>(places).first(found));
+  }
+}
+
+std::size_t run_count(std::size_t indices, std::uint32_t indices_per_primitive) {
+  return (indices / indices_per_primitive + kItemPrimitives - 1) / kItemPrimitives + 1;
+}
+
 }  // namespace
+
+VertexFetch& VertexFetches::of(const DrawInfo& draw, bool& is_new) {
+  const auto [at, added] = by_list_.try_emplace(key(draw));
+  is_new = added;
+  return at->second;
+}
+
+void VertexFetches::find(const DrawInfo& draw, VertexFetch& fetch) const {
+  const int shift = exact_ ? 0 : kReuseShiftMax;
+  // Meshes begin at places that a hash scatters: no list of their sizes is needed.
+  const std::uint32_t first_line = block_hash(2 * draw.mesh_number + 1) >> 1;
+  const std::uint32_t per_primitive = draw.indices_per_primitive();
+  const VertexLines lines(draw, first_line, shift);
+  fetch.misses.assign(run_count(draw.index_count, per_primitive), 0);
+  for_each_run({draw.indices, draw.index_count}, per_primitive,
+               VertexCache(draw.first_vertex, draw.vertex_count, cache_entries_),
+               [&](std::size_t first, std::span<const std::uint32_t> places) {
+                 fetch.misses[first / (per_primitive * kItemPrimitives)] =
+                     static_cast<std::uint32_t>(places.size());
+                 for (const std::uint32_t place : places) {
+                   const auto i = static_cast<std::uint32_t>(first) + place;
+                   lines.read(i / per_primitive, draw.indices[i], fetch.reads);
+                 }
+               });
+  const auto of_vertices = static_cast<std::ptrdiff_t>(fetch.reads.size());
+  read_indices(draw, first_line, shift, fetch.reads);
+  std::inplace_merge(fetch.reads.begin(), fetch.reads.begin() + of_vertices, fetch.reads.end(),
+                     [](const LineRead& a, const LineRead& b) { return a.primitive < b.primitive; });
+}
 
 std::vector<std::uint32_t> count_cache_misses(std::span<const std::uint32_t> indices, std::size_t vertices,
                                               std::uint32_t indices_per_primitive, int cache_entries) {
-  const std::size_t primitives = indices.size() / indices_per_primitive;
-  std::vector<std::uint32_t> misses((primitives + kItemPrimitives - 1) / kItemPrimitives + 1, 0);
-  for_each_cache_miss(indices, vertices, cache_entries, [&](std::uint32_t i, std::uint32_t) {
-    misses[i / (indices_per_primitive * kItemPrimitives)] += 1;
-  });
+  std::vector<std::uint32_t> misses(run_count(indices.size(), indices_per_primitive), 0);
+  for_each_run(indices, indices_per_primitive, VertexCache(0, vertices, cache_entries),
+               [&](std::size_t first, std::span<const std::uint32_t> places) {
+                 misses[first / (indices_per_primitive * kItemPrimitives)] =
+                     static_cast<std::uint32_t>(places.size());
+               });
   return misses;
 }
 
@@ -245,30 +305,35 @@ std::uint64_t mark_outside(const PassContext& context, Segment& segment) {
   return count;
 }
 
-void count_vertex_work(const PassContext& context, const Segment& segment, int cache_entries,
+void count_vertex_work(const PassContext& context, const Segment& segment, const VertexFetches& fetches,
                        BinWorker& worker) {
-  const int shift = worker.tracker.kinds[index_of(ReuseStream::geometry)].shift;
-  std::map<const std::uint32_t*, PartFetch> fetches;  // instances share their mesh's indices
+  const DrawInfo* last = nullptr;
+  const VertexFetch* fetch = nullptr;
   for (const GeometryItem& item : segment.items) {
     const DrawInfo& draw = context.draws[item.draw];
-    auto found = fetches.find(draw.indices);
-    if (found == fetches.end()) {
-      // Meshes begin at places that a hash scatters: no list of their sizes is needed.
-      const std::uint32_t first_line = block_hash(2 * draw.mesh_number + 1) >> 1;
-      found = fetches.emplace(draw.indices, fetch_part(draw, first_line, cache_entries, shift)).first;
-    }
+    if (&draw != last) fetch = &fetches.of(draw);
+    last = &draw;
     const std::uint32_t chunk = (draw.first_primitive + item.first_primitive) / context.chunk_primitives;
-    count_vertices(context, item, found->second.misses[item.first_primitive / kItemPrimitives],
+    count_vertices(context, item, fetch->misses[item.first_primitive / kItemPrimitives],
                    worker.chunks[chunk]);
-    track_reads(draw, item, found->second, worker.tracker);
+    track_reads(draw, item, *fetch, worker.tracker);
   }
 }
 
-void shade_vertices(const PassContext& context, Segment& segment, int jobs) {
+// Lists of indices first: they are the longest tasks.
+void shade_vertices(const PassContext& context, Segment& segment, int jobs, VertexFetches& fetches) {
+  std::vector<std::pair<const DrawInfo*, VertexFetch*>> lists;
+  for (const GeometryItem& item : segment.items) {
+    if (item.first_primitive != 0) continue;
+    bool is_new = false;
+    VertexFetch& fetch = fetches.of(context.draws[item.draw], is_new);
+    if (is_new) lists.emplace_back(&context.draws[item.draw], &fetch);
+  }
   const std::vector<VertexTask> tasks = vertex_tasks(context, segment);
   std::vector<VertexBatch> batches(static_cast<std::size_t>(std::max(1, jobs)));
-  parallel_for(tasks.size(), jobs, [&](std::size_t i, int worker) {
-    const VertexTask& task = tasks[i];
+  parallel_for(lists.size() + tasks.size(), jobs, [&](std::size_t i, int worker) {
+    if (i < lists.size()) return fetches.find(*lists[i].first, *lists[i].second);
+    const VertexTask& task = tasks[i - lists.size()];
     const DrawInfo& draw = context.draws[task.draw];
     const std::size_t local = task.draw - segment.first_draw;
     float* varyings = segment.varyings.data() + segment.varying_base[local] +

@@ -104,12 +104,72 @@ struct TileDepth {
   float scale;
 };
 
+/// Exact bounds of a tile while some of its samples are replaced. The others are read only where a replaced
+/// one was a bound, and that only until another one of the bound's value is found.
+class BoundsUpdate {
+ public:
+  BoundsUpdate(const TileDepth& tile, std::size_t samples)
+      : tile_(tile),
+        count_(static_cast<int>(samples) * kBlockLanes),
+        low_(static_cast<std::int32_t>(*tile.tile_min)),
+        high_(static_cast<std::int32_t>(*tile.tile_max)),
+        lowest_(low_),
+        highest_(high_),
+        lost_low_(low_ < low_),
+        lost_high_(lost_low_) {}
+
+  HWY_INLINE void replace(LaneM written, LaneI old, LaneI now) {
+    lowest_ = min(lowest_, select(written, now, low_));
+    highest_ = max(highest_, select(written, now, high_));
+    lost_low_ = lost_low_ | (written & (old == low_));
+    lost_high_ = lost_high_ | (written & (old == high_));
+  }
+
+  /// After all writes.
+  void finish() const {
+    const bool lower = any(lowest_ < low_), higher = any(highest_ > high_);
+    if ((any(lost_low_) && !lower && !holds(low_)) || (any(lost_high_) && !higher && !holds(high_)))
+      return read_all();
+    if (lower) *tile_.tile_min = least(lowest_);
+    if (higher) *tile_.tile_max = most(highest_);
+  }
+
+ private:
+  static std::uint32_t least(LaneI z) {
+    return static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(DI(), z.v)));
+  }
+  static std::uint32_t most(LaneI z) {
+    return static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(DI(), z.v)));
+  }
+  LaneI stored(int first) const { return load(reinterpret_cast<const std::int32_t*>(tile_.stored) + first); }
+  bool holds(LaneI value) const {
+    for (int first = 0; first < count_; first += kVectorLanes)
+      if (any(stored(first) == value)) return true;
+    return false;
+  }
+  void read_all() const {
+    LaneI lowest = stored(0), highest = lowest;
+    for (int first = kVectorLanes; first < count_; first += kVectorLanes) {
+      lowest = min(lowest, stored(first));
+      highest = max(highest, stored(first));
+    }
+    *tile_.tile_min = least(lowest);
+    *tile_.tile_max = most(highest);
+  }
+
+  const TileDepth& tile_;
+  const int count_;
+  const LaneI low_, high_;
+  LaneI lowest_, highest_;
+  LaneM lost_low_, lost_high_;  ///< lanes that replaced a value equal to the bound
+};
+
 template <Compare kCompare, bool kWrite>
 void fine_test_of(const RasterTriangle& t, int x, int y, std::span<const SamplePosition> positions,
                   const TileDepth& tile, SampleMasks& masks) {
   const float left = static_cast<float>(x) - t.reference_x, top = static_cast<float>(y) - t.reference_y;
   masks.start();
-  LaneI lowest(std::numeric_limits<std::int32_t>::max()), highest(0);
+  BoundsUpdate bounds(tile, positions.size());
   for (std::size_t s = 0; s < positions.size(); ++s) {
     // Sums of multiples of 1/16 below 2^15: exact.
     const LaneF sample_x(left + 0.5f + static_cast<float>(positions[s].x) * 0.0625f);
@@ -119,31 +179,20 @@ void fine_test_of(const RasterTriangle& t, int x, int y, std::span<const SampleP
     std::uint64_t passed = 0;
     for (int v = 0; v < kBlockVectors; ++v) {
       const int first = v * kVectorLanes;
+      if ((covered >> first & kRegisterBits) == 0) continue;
       const LaneI old = load(stored + first);
-      if ((covered >> first & kRegisterBits) == 0) {
-        if constexpr (kWrite) {
-          lowest = min(lowest, old);
-          highest = max(highest, old);
-        }
-        continue;
-      }
       const LaneI z = depth_at(t.z, load(kLaneOffsets.fx + first) + sample_x,
                                load(kLaneOffsets.fy + first) + sample_y, tile.scale);
       const LaneM pass = mask_from_bits(covered, first) & compare_depth(kCompare, z, old);
       put_mask(pass, v, passed);
       if constexpr (kWrite) {
-        const LaneI now = select(pass, z, old);
-        store(now, stored + first);
-        lowest = min(lowest, now);
-        highest = max(highest, now);
+        store(select(pass, z, old), stored + first);
+        bounds.replace(pass, old, z);
       }
     }
     masks.set(s, passed);
   }
-  if constexpr (kWrite) {
-    *tile.tile_min = static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(DI(), lowest.v)));
-    *tile.tile_max = static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(DI(), highest.v)));
-  }
+  if constexpr (kWrite) bounds.finish();
 }
 
 template <bool kWrite>

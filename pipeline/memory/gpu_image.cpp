@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pipeline/base/huge_pages.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/image/image.h"
 #include "pipeline/memory/coverage_map.h"
@@ -30,6 +31,7 @@ GpuImage::GpuImage(Format f, int w, int h, int s, int array_layers, int coverage
     plane_count.resize(blocks);
     planes.resize(blocks * kMaxDepthPlanes);
     plane_lanes.resize(blocks * static_cast<std::size_t>(kMaxDepthPlanes * s));
+    prefer_huge_pages(planes.data(), planes.size());
     stored_form.resize(blocks, DepthTileForm::raw);
   } else if (samples > 1) {
     single_lanes.resize(blocks);
@@ -53,6 +55,9 @@ void GpuImage::place_texels() {
   first_stride = first_samples_apart ? sample_words() : block_words();
   further_begin = first_samples_apart ? blocks * sample_words() : sample_words();
   further_stride = first_samples_apart ? block_words() - sample_words() : block_words();
+  // Depth is held as planes, further samples are few: their pages are touched here and there.
+  if (!info(format).is_depth && (samples == 1 || first_samples_apart))
+    prefer_huge_pages(texels.data(), first_samples_apart ? further_begin : texels.size());
 }
 
 void GpuImage::fill(int block_index) {

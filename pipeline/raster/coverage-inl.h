@@ -1,4 +1,6 @@
 // Coverage of 8x8 tiles, exact: integer edge functions on vector registers. Per-target include guard.
+#include <algorithm>
+
 #include "pipeline/raster/tile.h"
 #include "pipeline/raster/triangle.h"
 #include "pipeline/simd/lanes-inl.h"
@@ -36,6 +38,43 @@ inline constexpr LaneOffsets make_lane_offsets() {
 }
 inline constexpr LaneOffsets kLaneOffsets = make_lane_offsets();
 
+/// Lanes of a tile left of, and above, each of its columns and rows.
+struct LanesBefore {
+  std::uint64_t column[kBlockPx + 1], row[kBlockPx + 1];
+};
+inline constexpr LanesBefore make_lanes_before() {
+  LanesBefore lanes{};
+  for (int i = 0; i <= kBlockPx; ++i)
+    for (int lane = 0; lane < kBlockLanes; ++lane) {
+      if (lane_x(lane) < i) lanes.column[i] |= std::uint64_t{1} << lane;
+      if (lane_y(lane) < i) lanes.row[i] |= std::uint64_t{1} << lane;
+    }
+  return lanes;
+}
+inline constexpr LanesBefore kLanesBefore = make_lanes_before();
+
+/// Lanes of a tile in a rectangle of pixels from its corner, both ends included.
+HWY_INLINE std::uint64_t lanes_within(int left, int top, int right, int bottom) {
+  const auto at = [](int i) HWY_ATTR { return std::clamp(i, 0, kBlockPx); };
+  return kLanesBefore.column[at(right + 1)] & ~kLanesBefore.column[at(left)] &
+         kLanesBefore.row[at(bottom + 1)] & ~kLanesBefore.row[at(top)];
+}
+
+/// Sample positions on registers: 1/16 px from the pixel's corner.
+struct SampleGrid {
+  SampleGrid(std::span<const SamplePosition> positions, int left, int top, int right, int bottom)
+      : count(static_cast<int>(positions.size())), min_x(left), min_y(top), max_x(right), max_y(bottom) {
+    for (int s = 0; s < count; ++s) {
+      x[s] = 8 + positions[static_cast<std::size_t>(s)].x;
+      y[s] = 8 + positions[static_cast<std::size_t>(s)].y;
+    }
+  }
+  int count;
+  int min_x, min_y, max_x, max_y;  ///< bounds of the positions, from the pixel's center
+  HWY_ALIGN std::int32_t x[kMaxSamples] = {};
+  HWY_ALIGN std::int32_t y[kMaxSamples] = {};
+};
+
 /// Writes the mask's bits as bits [lanes * v, ...) of a 64-bit word; the word starts out zero.
 HWY_INLINE void put_mask(LaneM m, int v, std::uint64_t& word) {
   word |= static_cast<std::uint64_t>(mask_bits(m)) << (v * kVectorLanes);
@@ -65,14 +104,12 @@ struct SampleMasks {
 /// One triangle against the tiles of a bin.
 class TileCoverage {
  public:
-  TileCoverage(const RasterTriangle& t, std::span<const SamplePosition> positions, int min_x, int min_y,
-               int max_x, int max_y)
-      : t_(t), positions_(positions) {
+  TileCoverage(const RasterTriangle& t, const SampleGrid& grid) : t_(t), grid_(grid) {
     // Samples of a tile lie between 8 + min and 8 + 112 + max sixteenths of a pixel from its corner.
     for (int i = 0; i < 3; ++i) {
       const std::int64_t a = t.a[i], b = t.b[i];
-      const std::int64_t left = a * (8 + min_x), right = a * (120 + max_x);
-      const std::int64_t top = b * (8 + min_y), bottom = b * (120 + max_y);
+      const std::int64_t left = a * (8 + grid.min_x), right = a * (120 + grid.max_x);
+      const std::int64_t top = b * (8 + grid.min_y), bottom = b * (120 + grid.max_y);
       highest_[i] = std::max(left, right) + std::max(top, bottom);
       lowest_[i] = std::min(left, right) + std::min(top, bottom);
     }
@@ -85,16 +122,18 @@ class TileCoverage {
       const std::int64_t e = std::int64_t{t_.a[i]} * (16 * x) + std::int64_t{t_.b[i]} * (16 * y) + t_.c[i];
       if (e + highest_[i] < 0) return false;
       if (e + lowest_[i] >= 0) continue;
-      corner_[edge_count_] = e;  // cuts the tile, so that it fits 32 bits (raster/triangle.h)
+      corner_[edge_count_] = e;
       edge_[edge_count_++] = i;
     }
+    x_ = x;
+    y_ = y;
     return true;
   }
   bool covers_whole_tile() const { return edge_count_ == 0; }
 
-  /// For a tile that edges cut.
+  /// For a tile that edges cut. Registers of pixels beyond the triangle's bounds are left out: most of them,
+  /// for small triangles.
   void masks(SampleMasks& masks) {
-    prepare_offsets();
     switch (edge_count_) {
       case 1:
         return masks_of<1>(masks);
@@ -106,48 +145,89 @@ class TileCoverage {
   }
 
  private:
+  /// An edge's values at the pixels of a tile's first register, from its corner.
+  LaneI first_offsets(int edge) const {
+    const LaneI x = load(kLaneOffsets.x), y = load(kLaneOffsets.y);
+    return shift_left<4>(LaneI(t_.a[edge]) * x + LaneI(t_.b[edge]) * y);
+  }
+  /// Those of the register that begins at `lane` are moved by as much.
+  LaneI move_to(int edge, int lane) const {
+    return LaneI(16 * (t_.a[edge] * lane_x(lane) + t_.b[edge] * lane_y(lane)));
+  }
   void prepare_offsets() {
     if (offsets_ready_) return;
     offsets_ready_ = true;
     for (int i = 0; i < 3; ++i) {
-      // A register's lanes are those of the first one, moved.
-      const LaneI x = load(kLaneOffsets.x), y = load(kLaneOffsets.y);
-      const LaneI first = shift_left<4>(LaneI(t_.a[i]) * x + LaneI(t_.b[i]) * y);
-      for (int v = 0; v < kBlockVectors; ++v) {
-        const std::int32_t moved =
-            16 * (t_.a[i] * lane_x(v * kVectorLanes) + t_.b[i] * lane_y(v * kVectorLanes));
-        store(first + LaneI(moved), offsets_[i] + v * kVectorLanes);
-      }
+      const LaneI first = first_offsets(i);
+      for (int v = 0; v < kBlockVectors; ++v)
+        store(first + move_to(i, v * kVectorLanes), offsets_[i] + v * kVectorLanes);
     }
   }
 
+  /// What an edge's value at a pixel's corner must exceed for a sample to be inside. Both fit 32 bits where
+  /// the edge cuts the tile (raster/triangle.h), so that sums may wrap on the way.
+  void find_thresholds(int edge, std::int64_t corner, std::int32_t* threshold) const {
+    const LaneI base(static_cast<std::int32_t>(-1 - corner)), a(t_.a[edge]), b(t_.b[edge]);
+    for (int s = 0; s < grid_.count; s += kVectorLanes)
+      store(base - (a * load(grid_.x + s) + b * load(grid_.y + s)), threshold + s);
+  }
+
+  template <int kEdges>
+  using Thresholds = std::int32_t[kEdges][kMaxSamples];
+
   template <int kEdges>
   void masks_of(SampleMasks& masks) {
+    HWY_ALIGN Thresholds<kEdges> threshold;
+    for (int e = 0; e < kEdges; ++e) find_thresholds(edge_[e], corner_[e], threshold[e]);
+    const std::uint64_t bounds = lanes_within(t_.min_x - x_, t_.min_y - y_, t_.max_x - x_, t_.max_y - y_);
+    int first_lane[kBlockVectors], registers = 0;
+    for (int lane = 0; lane < kBlockLanes; lane += kVectorLanes) {
+      first_lane[registers] = lane;
+      registers += (bounds >> lane & kRegisterBits) != 0 ? 1 : 0;
+    }
     masks.start();
-    for (std::size_t s = 0; s < positions_.size(); ++s) {
-      LaneI threshold[kEdges];
-      for (int e = 0; e < kEdges; ++e) {
-        const int i = edge_[e];
-        const std::int64_t at_sample = corner_[e] + std::int64_t{t_.a[i]} * (8 + positions_[s].x) +
-                                       std::int64_t{t_.b[i]} * (8 + positions_[s].y);
-        threshold[e] = LaneI(static_cast<std::int32_t>(-1 - at_sample));
-      }
+    if (registers == 1) return masks_of_one<kEdges>(threshold, first_lane[0], masks);
+    prepare_offsets();
+    if (registers == kBlockVectors) return masks_of_all<kEdges>(threshold, masks);
+    for (int s = 0; s < grid_.count; ++s) {
       std::uint64_t word = 0;
-      for (int v = 0; v < kBlockVectors; ++v) {
-        LaneM inside = load(offsets_[edge_[0]] + v * kVectorLanes) > threshold[0];
-        for (int e = 1; e < kEdges; ++e)
-          inside = inside & (load(offsets_[edge_[e]] + v * kVectorLanes) > threshold[e]);
-        put_mask(inside, v, word);
-      }
-      masks.set(s, word);
+      for (int r = 0; r < registers; ++r) put_inside<kEdges>(threshold, s, first_lane[r], word);
+      masks.set(static_cast<std::size_t>(s), word);
+    }
+  }
+  template <int kEdges>
+  void masks_of_all(const Thresholds<kEdges>& threshold, SampleMasks& masks) const {
+    for (int s = 0; s < grid_.count; ++s) {
+      std::uint64_t word = 0;
+      for (int v = 0; v < kBlockVectors; ++v) put_inside<kEdges>(threshold, s, v * kVectorLanes, word);
+      masks.set(static_cast<std::size_t>(s), word);
+    }
+  }
+  template <int kEdges>
+  HWY_INLINE void put_inside(const Thresholds<kEdges>& threshold, int s, int lane,
+                             std::uint64_t& word) const {
+    LaneM inside = load(offsets_[edge_[0]] + lane) > LaneI(threshold[0][s]);
+    for (int e = 1; e < kEdges; ++e)
+      inside = inside & (load(offsets_[edge_[e]] + lane) > LaneI(threshold[e][s]));
+    word |= static_cast<std::uint64_t>(mask_bits(inside)) << lane;
+  }
+  template <int kEdges>
+  void masks_of_one(const Thresholds<kEdges>& threshold, int lane, SampleMasks& masks) const {
+    LaneI offset[kEdges];
+    for (int e = 0; e < kEdges; ++e) offset[e] = first_offsets(edge_[e]) + move_to(edge_[e], lane);
+    for (int s = 0; s < grid_.count; ++s) {
+      LaneM inside = offset[0] > LaneI(threshold[0][s]);
+      for (int e = 1; e < kEdges; ++e) inside = inside & (offset[e] > LaneI(threshold[e][s]));
+      masks.set(static_cast<std::size_t>(s), static_cast<std::uint64_t>(mask_bits(inside)) << lane);
     }
   }
 
   const RasterTriangle& t_;
-  std::span<const SamplePosition> positions_;
+  const SampleGrid& grid_;
   std::int64_t highest_[3], lowest_[3], corner_[3];
   int edge_[3];
   int edge_count_ = 0;
+  int x_ = 0, y_ = 0;  ///< the tile that was asked for last
   bool offsets_ready_ = false;
   HWY_ALIGN std::int32_t offsets_[3][kBlockLanes];
 };

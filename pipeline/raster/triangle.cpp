@@ -1,8 +1,11 @@
 #include "pipeline/raster/triangle.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <limits>
+
+#include "pipeline/raster/triangle_setup.h"
 
 namespace hwsim::pipeline {
 namespace {
@@ -21,6 +24,13 @@ void set_edge(const ScreenVertex& p, const ScreenVertex& q, int i, RasterTriangl
   t.c[i] = floor_div16(c);  // exact: 16 (aX + bY) + c >= 0  <=>  aX + bY + floor(c / 16) >= 0
 }
 
+void move(ViewportShift shift, ScreenVertex (&v)[3]) {
+  for (ScreenVertex& vertex : v) {
+    vertex.x += shift.x;
+    vertex.y += shift.y;
+  }
+}
+
 // A pixel is touched iff no edge excludes all of it: move each edge outward by its support over the pixel
 // square, and treat touching the boundary as touching (conservative overestimation).
 void grow_edges(RasterTriangle& t) {
@@ -30,85 +40,76 @@ void grow_edges(RasterTriangle& t) {
   }
 }
 
-// First pixel column (or row) with a sample at or right of `low`, and last with one at or left of `high`;
-// 1/256 px.
-void sample_bounds(std::int32_t low, std::int32_t high, int sample_low, int sample_high, int& first,
-                   int& last) {
-  // pixel p has samples from 256 p + 128 + 16 sample_low to 256 p + 128 + 16 sample_high
-  const std::int32_t to_last_sample = 128 + 16 * sample_high;
-  const std::int32_t to_first_sample = 128 + 16 * sample_low;
-  first = (low - to_last_sample + kSubpixelUnits - 1) >> kSubpixelBits;
-  last = (high - to_first_sample) >> kSubpixelBits;
-}
-
-/// Pixels that can hold covered samples, not yet clipped to the viewport.
-struct PixelBounds {
-  int first_x, last_x, first_y, last_y;
-};
-
-PixelBounds find_bounds(std::int32_t low_x, std::int32_t high_x, std::int32_t low_y, std::int32_t high_y,
-                        const SetupRules& rules) {
-  if (rules.conservative)
-    return {(low_x - 1) >> kSubpixelBits, high_x >> kSubpixelBits, (low_y - 1) >> kSubpixelBits,
-            high_y >> kSubpixelBits};
-  PixelBounds b;
-  sample_bounds(low_x, high_x, rules.sample_min_x, rules.sample_max_x, b.first_x, b.last_x);
-  sample_bounds(low_y, high_y, rules.sample_min_y, rules.sample_max_y, b.first_y, b.last_y);
-  return b;
-}
-
-PixelBounds find_bounds(const ScreenVertex (&v)[3], const SetupRules& rules) {
-  const auto [low_x, high_x] = std::minmax({v[0].x, v[1].x, v[2].x});
-  const auto [low_y, high_y] = std::minmax({v[0].y, v[1].y, v[2].y});
-  return find_bounds(low_x, high_x, low_y, high_y, rules);
-}
-
-bool clip_bounds(const PixelBounds& b, const SetupRules& rules, PixelRectangle& r) {
-  r = {std::max(b.first_x, 0), std::max(b.first_y, 0), std::min(b.last_x, rules.width_px - 1),
-       std::min(b.last_y, rules.height_px - 1)};
-  return r.min_x <= r.max_x && r.min_y <= r.max_y;
-}
-
-bool set_bounds(const PixelBounds& b, const SetupRules& rules, RasterTriangle& t) {
-  PixelRectangle r;
-  if (!clip_bounds(b, rules, r)) return false;
-  t.min_x = static_cast<std::int16_t>(r.min_x);
-  t.min_y = static_cast<std::int16_t>(r.min_y);
-  t.max_x = static_cast<std::int16_t>(r.max_x);
-  t.max_y = static_cast<std::int16_t>(r.max_y);
-  return true;
-}
-
-struct Gradients {
-  double x0, y0;                      // vertex 0 relative to the reference pixel, px
-  double l1_dx, l1_dy, l2_dx, l2_dy;  // slopes of the barycentric coordinates, per px
-};
-
-PlaneEquation make_plane(const Gradients& g, double v0, double v1, double v2) {
+PlaneEquation make_plane(const TriangleSlopes& g, double v0, double v1, double v2) {
   const double dx = (v1 - v0) * g.l1_dx + (v2 - v0) * g.l2_dx;
   const double dy = (v1 - v0) * g.l1_dy + (v2 - v0) * g.l2_dy;
   return {static_cast<float>(v0 - dx * g.x0 - dy * g.y0), static_cast<float>(dx), static_cast<float>(dy)};
 }
 
-void set_planes(const ScreenVertex& v0, const ScreenVertex& v1, const ScreenVertex& v2, std::int64_t area2,
-                int reference_x, int reference_y, RasterTriangle& t) {
+}  // namespace
+
+void place_triangle(const ScreenVertex (&v)[3], const SetupRules& rules,
+                    std::span<const ViewportShift> viewports, std::span<TrianglePlace> places,
+                    std::span<SetupResult> results) {
+  const SetupResult result = cull_by_area(doubled_area(v[0], v[1], v[2]), rules);
+  if (result != SetupResult::drawn) {
+    std::ranges::fill(results, result);
+    return;
+  }
+  int reference_x = std::numeric_limits<int>::max(), reference_y = reference_x;
+  for (std::size_t l = 0; l < viewports.size(); ++l) {
+    ScreenVertex moved[3] = {v[0], v[1], v[2]};
+    move(viewports[l], moved);
+    const PixelBounds bounds = find_bounds(moved[0], moved[1], moved[2], rules);
+    reference_x = std::min(reference_x, bounds.first_x);
+    reference_y = std::min(reference_y, bounds.first_y);
+    results[l] = set_bounds(bounds, rules, places[l]) ? SetupResult::drawn : SetupResult::sample_miss;
+  }
+  for (std::size_t l = 0; l < viewports.size(); ++l) {
+    if (results[l] != SetupResult::drawn) continue;
+    places[l].reference_x = static_cast<std::int16_t>(std::max(reference_x, 0));
+    places[l].reference_y = static_cast<std::int16_t>(std::max(reference_y, 0));
+  }
+}
+
+TriangleSlopes set_up_depth(const ScreenVertex (&v)[3], const TrianglePlace& place, ViewportShift shift,
+                            bool conservative, RasterTriangle& t) {
+  const std::int64_t area2 = doubled_area(v[0], v[1], v[2]);
+  // Clockwise on screen: the inside is where the edge functions are positive.
+  const std::size_t second = area2 > 0 ? 1 : 2;
+  const std::size_t third = 3 - second;
+  ScreenVertex moved[3] = {v[0], v[1], v[2]};
+  move(shift, moved);
+  set_edge(moved[0], moved[second], 0, t);
+  set_edge(moved[second], moved[third], 1, t);
+  set_edge(moved[third], moved[0], 2, t);
+  if (conservative) grow_edges(t);
+  t.front_facing = area2 < 0;  // y down: counterclockwise with y up is a negative area
+  t.min_x = place.min_x;
+  t.min_y = place.min_y;
+  t.max_x = place.max_x;
+  t.max_y = place.max_y;
+  t.reference_x = static_cast<float>(place.reference_x) + static_cast<float>(shift.x) / kSubpixelUnits;
+  t.reference_y = static_cast<float>(place.reference_y) + static_cast<float>(shift.y) / kSubpixelUnits;
   constexpr double kPx = 1.0 / kSubpixelUnits;
   // Twice the area in 1/256 px squared; lambda1 = cross(p - v0, v2 - v0) / cross(v1 - v0, v2 - v0).
   const double scale = kSubpixelUnits / static_cast<double>(area2);
-  Gradients g;
-  g.x0 = v0.x * kPx - reference_x;
-  g.y0 = v0.y * kPx - reference_y;
-  g.l1_dx = static_cast<double>(v2.y - v0.y) * scale;
-  g.l1_dy = -static_cast<double>(v2.x - v0.x) * scale;
-  g.l2_dx = -static_cast<double>(v1.y - v0.y) * scale;
-  g.l2_dy = static_cast<double>(v1.x - v0.x) * scale;
-  t.z = make_plane(g, v0.z, v1.z, v2.z);
-  t.inv_w = make_plane(g, v0.inv_w, v1.inv_w, v2.inv_w);
-  t.l1_w = make_plane(g, 0.0, v1.inv_w, 0.0);
-  t.l2_w = make_plane(g, 0.0, 0.0, v2.inv_w);
+  TriangleSlopes g;
+  g.x0 = v[0].x * kPx - place.reference_x;
+  g.y0 = v[0].y * kPx - place.reference_y;
+  g.l1_dx = static_cast<double>(v[2].y - v[0].y) * scale;
+  g.l1_dy = -static_cast<double>(v[2].x - v[0].x) * scale;
+  g.l2_dx = -static_cast<double>(v[1].y - v[0].y) * scale;
+  g.l2_dy = static_cast<double>(v[1].x - v[0].x) * scale;
+  t.z = make_plane(g, v[0].z, v[1].z, v[2].z);
+  return g;
 }
 
-}  // namespace
+void set_up_attributes(const ScreenVertex (&v)[3], const TriangleSlopes& g, RasterTriangle& t) {
+  t.inv_w = make_plane(g, v[0].inv_w, v[1].inv_w, v[2].inv_w);
+  t.l1_w = make_plane(g, 0.0, v[1].inv_w, 0.0);
+  t.l2_w = make_plane(g, 0.0, 0.0, v[2].inv_w);
+}
 
 SetupResult set_up_triangle(const ScreenVertex (&v)[3], const SetupRules& rules, RasterTriangle& t) {
   constexpr ViewportShift kNone{};
@@ -120,54 +121,13 @@ SetupResult set_up_triangle(const ScreenVertex (&v)[3], const SetupRules& rules,
 void set_up_triangle(const ScreenVertex (&v)[3], const SetupRules& rules,
                      std::span<const ViewportShift> viewports, std::span<RasterTriangle> triangles,
                      std::span<SetupResult> results) {
-  const std::int64_t area2 =
-      std::int64_t{v[1].x - v[0].x} * (v[2].y - v[0].y) - std::int64_t{v[2].x - v[0].x} * (v[1].y - v[0].y);
-  const bool front_facing = area2 < 0;  // y down: counterclockwise with y up is a negative area
-  const bool culled = (rules.cull_back && !front_facing) || (rules.cull_front && front_facing);
-  if (area2 == 0 || culled) {
-    std::ranges::fill(results, area2 == 0 ? SetupResult::zero_area : SetupResult::backface);
-    return;
-  }
-  // Clockwise on screen: the inside is where the edge functions are positive.
-  const std::size_t second = area2 > 0 ? 1 : 2;
-  const std::size_t third = 3 - second;
-  int reference_x = std::numeric_limits<int>::max(), reference_y = reference_x;
-  bool any = false;
-  for (std::size_t l = 0; l < viewports.size(); ++l) {
-    const ViewportShift shift = viewports[l];
-    ScreenVertex moved[3] = {v[0], v[1], v[2]};
-    for (ScreenVertex& vertex : moved) {
-      vertex.x += shift.x;
-      vertex.y += shift.y;
-    }
-    const PixelBounds bounds = find_bounds(moved, rules);
-    reference_x = std::min(reference_x, bounds.first_x);
-    reference_y = std::min(reference_y, bounds.first_y);
-    RasterTriangle& t = triangles[l];
-    results[l] = set_bounds(bounds, rules, t) ? SetupResult::drawn : SetupResult::sample_miss;
-    if (results[l] != SetupResult::drawn) continue;
-    any = true;
-    set_edge(moved[0], moved[second], 0, t);
-    set_edge(moved[second], moved[third], 1, t);
-    set_edge(moved[third], moved[0], 2, t);
-    if (rules.conservative) grow_edges(t);
-    t.front_facing = front_facing;
-    t.layer = static_cast<std::int32_t>(l);
-  }
-  if (!any) return;
-  reference_x = std::max(reference_x, 0);
-  reference_y = std::max(reference_y, 0);
-  RasterTriangle planes;
-  set_planes(v[0], v[1], v[2], area2, reference_x, reference_y, planes);
+  std::array<TrianglePlace, kMaxViewports> places;
+  place_triangle(v, rules, viewports, std::span(places).first(viewports.size()), results);
   for (std::size_t l = 0; l < viewports.size(); ++l) {
     if (results[l] != SetupResult::drawn) continue;
-    RasterTriangle& t = triangles[l];
-    t.z = planes.z;
-    t.inv_w = planes.inv_w;
-    t.l1_w = planes.l1_w;
-    t.l2_w = planes.l2_w;
-    t.reference_x = static_cast<float>(reference_x) + static_cast<float>(viewports[l].x) / kSubpixelUnits;
-    t.reference_y = static_cast<float>(reference_y) + static_cast<float>(viewports[l].y) / kSubpixelUnits;
+    set_up_attributes(v, set_up_depth(v, places[l], viewports[l], rules.conservative, triangles[l]),
+                      triangles[l]);
+    triangles[l].layer = static_cast<std::int32_t>(l);
   }
 }
 

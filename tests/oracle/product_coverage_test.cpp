@@ -51,7 +51,8 @@ void add_tile(const product::SampleMasks& masks, std::size_t samples, int x, int
 // The tiles of the window within the triangle's bounds, as the emulator walks them.
 void rasterize(const pipeline::RasterTriangle& t, std::span<const pipeline::SamplePosition> positions,
                const SampleBounds& b, CoverageWindow& window) {
-  product::TileCoverage coverage(t, positions, b.min_x, b.min_y, b.max_x, b.max_y);
+  const product::SampleGrid grid(positions, b.min_x, b.min_y, b.max_x, b.max_y);
+  product::TileCoverage coverage(t, grid);
   const int left = std::max<int>(t.min_x, window.x) & ~7, top = std::max<int>(t.min_y, window.y) & ~7;
   const int right = std::min<int>(t.max_x, window.x + CoverageWindow::kSizePx - 1);
   const int bottom = std::min<int>(t.max_y, window.y + CoverageWindow::kSizePx - 1);
