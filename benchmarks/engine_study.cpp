@@ -2,7 +2,7 @@
 // of the event-driven engine, against that engine on the whole passes; the gain of each skip of the emulator,
 // and what replays cost.
 //   engine_study OUT_DIR [WIDTHxHEIGHT [SCENE,... [TECHNIQUE,...]]]
-// writes OUT_DIR/engines.csv, engines.md, engines.svg and costs.md.
+// writes OUT_DIR/engines.csv, engines.md and costs.md; scripts/plots.py draws the first.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -197,7 +197,6 @@ int run(const Options& o) {
     }
   }
   save(o.out + "/engines.md", [&](std::ostream& out) { write_table(rows, out); });
-  save(o.out + "/engines.svg", [&](std::ostream& out) { write_svg(rows, out); });
   save(o.out + "/costs.md", [&](std::ostream& out) {
     study_skips(o, out);
     study_replays(SceneTraces(o.view(o.scenes.front()), features).of("msaa8x"), out);

@@ -7,40 +7,10 @@
 namespace hwsim::benchmarks {
 namespace {
 
-constexpr const char* kColors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
-
 std::string number(const char* format, double value) {
   char text[64];
   std::snprintf(text, sizeof text, format, value);
   return text;
-}
-
-double x_of(double times_as_fast) { return 70.0 + 85.0 * std::log10(std::clamp(times_as_fast, 0.5, 1e6)); }
-double y_of(double pct) { return 340.0 - 5.0 * std::min(pct, 60.0); }
-
-void draw_axes(std::ostream& svg) {
-  svg << R"(<svg xmlns="http://www.w3.org/2000/svg" width="760" height="400" font-family="sans-serif" font-size="12">)"
-      << "\n<text x='70' y='20'>Time error of an engine against the whole event-driven simulation, and its "
-         "speed</text>\n<text x='260' y='385'>times as fast (logarithmic)</text>\n"
-         "<text x='5' y='30'>% error</text>\n<path d='M70 340H600M70 340V40' stroke='black' fill='none'/>\n";
-  for (double ratio = 1.0; ratio < 2e6; ratio *= 10.0)
-    svg << "<text x='" << x_of(ratio) - 4 << "' y='358'>" << number("%.0f", ratio) << "</text>\n";
-  for (double pct = 0.0; pct <= 60.0; pct += 10.0)
-    svg << "<text x='40' y='" << y_of(pct) + 4 << "'>" << number("%.0f", pct) << "</text>\n";
-}
-
-/// Dots on a grid of half a pixel, each place once: a plot of thousands of rows stays small.
-void draw_dots(const std::vector<StudyRow>& rows, const std::string& engine, const char* color,
-               std::ostream& svg) {
-  std::map<std::pair<int, int>, int> places;
-  for (const StudyRow& row : rows)
-    if (row.engine == engine)
-      ++places[{static_cast<int>(std::lround(x_of(row.times_as_fast))),
-                static_cast<int>(std::lround(y_of(std::abs(row.time_error_pct))))}];
-  svg << "<g fill='" << color << "' fill-opacity='0.35'>\n";
-  for (const auto& [place, count] : places)
-    svg << "<circle cx='" << place.first << "' cy='" << place.second << "' r='2'/>\n";
-  svg << "</g>\n";
 }
 
 }  // namespace
@@ -100,22 +70,6 @@ void write_table(const std::vector<StudyRow>& rows, std::ostream& out) {
         << " thousand fragments a second in the median, a tenth of the frames below "
         << number("%.0f", rates[rates.size() / 10]) << ", the slowest " << number("%.0f", rates.front())
         << "\n";
-}
-
-void write_svg(const std::vector<StudyRow>& rows, std::ostream& svg) {
-  draw_axes(svg);
-  std::size_t color = 0;
-  for (const auto& [engine, s] : summarize(rows)) {
-    const char* const paint = kColors[color % std::size(kColors)];
-    draw_dots(rows, engine, paint, svg);
-    const double x = x_of(s.median_times_as_fast);
-    svg << "<circle cx='" << x << "' cy='" << y_of(s.time_pct.median) << "' r='8' fill='none' stroke='"
-        << paint << "' stroke-width='2'/>\n<path d='M" << x << " " << y_of(s.time_pct.median) - 8 << "V"
-        << y_of(s.time_pct.p90) << "' stroke='" << paint << "' stroke-width='2'/>\n<text x='620' y='"
-        << 60 + 18 * color << "' fill='" << paint << "'>" << engine << "</text>\n";
-    ++color;
-  }
-  svg << "</svg>\n";
 }
 
 }  // namespace hwsim::benchmarks

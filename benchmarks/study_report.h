@@ -1,5 +1,5 @@
 #pragma once
-// Rows of the engine study, their summary, and both as CSV and as a plot.
+// Rows of the engine study, their summary, and both as CSV and Markdown.
 #include <map>
 #include <ostream>
 #include <string>
@@ -29,8 +29,5 @@ std::map<std::string, EngineSummary> summarize(const std::vector<StudyRow>& rows
 
 void write_csv(const std::vector<StudyRow>& rows, std::ostream& out);
 void write_table(const std::vector<StudyRow>& rows, std::ostream& out);
-/// Speed over the whole simulation (logarithmic) against absolute time error: a dot a row, a ring an engine's
-/// median, a bar up to its 90th percentile.
-void write_svg(const std::vector<StudyRow>& rows, std::ostream& out);
 
 }  // namespace hwsim::benchmarks

@@ -252,14 +252,23 @@ FittedModel Lab::fit(const std::vector<std::string>& papers, int starts) {
 }
 
 ExternalValidation Lab::validate_external(const std::string& scenes_folder) {
-  return lab::validate_external(external_traces(scenes_folder, *session_), *session_);
+  Observer& observer = session_->observer();
+  ExternalValidation validation =
+      lab::validate_external(external_traces(scenes_folder, *session_), *session_,
+                             [&](double done, const std::string& what) { observer.progress(done, what); });
+  observer.progress_ended();
+  return validation;
 }
 
 Report Lab::report(const std::vector<std::string>& inputs) { return gather_report(inputs, *session_); }
 
 Report Lab::report(const Request& request, const std::vector<Variation>& variations,
-                   const Comparison& comparison) {
+                   const std::optional<Comparison>& comparison) {
   return gather_report(request, variations, comparison, *session_);
+}
+
+Report Lab::report_of_paper(const Reproduction& reproduction) {
+  return gather_report(reproduction, *session_);
 }
 
 void Lab::write_report(const Report& report, const std::string& file) const {

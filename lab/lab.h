@@ -108,9 +108,12 @@ class Lab {
 
   /// All that a report shows of what `run`, `rank`, `compare` and `sweep` wrote (docs/report.md).
   Report report(const std::vector<std::string>& inputs);
-  /// The same of a comparison that was just made: its variations become hardware that the page can take.
+  /// The same of a request's points, and of a comparison that was just made of it: its variations become
+  /// hardware that the page can take.
   Report report(const Request& request, const std::vector<Variation>& variations,
-                const Comparison& comparison);
+                const std::optional<Comparison>& comparison);
+  /// A paper's tables, laid out as the paper has them.
+  Report report_of_paper(const Reproduction& reproduction);
   /// One HTML file that needs nothing else. Says what it lacks where parts of the page were not built.
   /// Throws InputError U010.
   void write_report(const Report& report, const std::string& file) const;

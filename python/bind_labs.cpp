@@ -182,6 +182,33 @@ py::dict validate(Workshop& shop, const std::vector<std::string>& papers) {
   return answer;
 }
 
+/// Writes the page of a request's points, with the what-ifs as hardware that they can be moved to.
+void report(Workshop& shop, const py::dict& words, const std::vector<std::string>& gpus,
+            const std::vector<std::string>& what_ifs, const std::string& file, const std::string& command) {
+  lab::Request request = to_request(words);
+  request.gpus = gpus;
+  const std::vector<lab::Variation> variations = lab::variations_of({.what_ifs = what_ifs});
+  shop.ask([&](lab::Lab& lab) {
+    std::optional<lab::Comparison> comparison;
+    if (!variations.empty()) comparison = lab.compare(request, variations);
+    lab::Report page = lab.report(request, variations, comparison);
+    page.command = command;
+    lab.write_report(page, file);
+    return true;
+  });
+}
+
+/// The same of folders, databases and JSON that the program wrote.
+void report_of(Workshop& shop, const std::vector<std::string>& inputs, const std::string& file,
+               const std::string& command) {
+  shop.ask([&](lab::Lab& lab) {
+    lab::Report page = lab.report(inputs);
+    page.command = command;
+    lab.write_report(page, file);
+    return true;
+  });
+}
+
 py::list doctor(Workshop& shop) {
   py::list checks;
   for (const lab::SelfCheck& check : shop.ask([](lab::Lab& lab) { return lab.check_itself(); }))
@@ -217,6 +244,9 @@ void bind_labs(py::module_& module) {
       .def("compare_results", compare_results, py::arg("results"))
       .def("change_interval", change_interval, py::arg("before"), py::arg("after"))
       .def("validate", validate, py::arg("papers"))
+      .def("report", report, py::arg("request"), py::arg("gpus"), py::arg("what_ifs"), py::arg("file"),
+           py::arg("command"))
+      .def("report_of", report_of, py::arg("inputs"), py::arg("file"), py::arg("command"))
       .def("doctor", doctor)
       .def("table", table_of, py::arg("kind"));
 }

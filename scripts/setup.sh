@@ -3,6 +3,7 @@
 # --python: also what HWSIM_PYTHON and its tests need.
 # --report: also what the page of `hwsim report` is built of: clang for WebAssembly; Node, and the packages that
 # page/package-lock.json pins.
+# --plots: also what scripts/plots.py draws the plots of the documents with.
 # --checks: also what the gate's checks need: Python's, clang, its sanitizers, clang-format, a browser without a screen.
 set -euo pipefail
 
@@ -24,6 +25,7 @@ for option in "$@"; do
   case $option in
     --python) packages+=("${python[@]}") ;;
     --checks) packages+=(clang libclang-rt-14-dev clang-format chromium fonts-dejavu-core "${python[@]}") ;;
+    --plots) packages+=(python3-matplotlib) ;;
     --report)
       report=true
       packages+=(clang-14 lld-14 wasi-libc libc++-14-dev-wasm32 libclang-rt-14-dev-wasm32)

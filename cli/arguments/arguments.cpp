@@ -181,7 +181,9 @@ void Parser::add_reference() {
 
 void Parser::add_list_and_show() {
   CLI::App& lister = add(app, "list", kHelpList, [this] { return Command(list); });
-  lister.add_option("WHAT", list.what, "gpus, scenes, techniques, counters, overlays or tables")
+  lister
+      .add_option("WHAT", list.what,
+                  "gpus, scenes, techniques, counters, overlays, tables, papers, sources, settings or codes")
       ->required()
       ->type_name(" ");
   add_common(lister, list.common);
@@ -305,8 +307,7 @@ void Parser::add_calibration() {
   reproducer.add_option("PAPER", reproduce.paper, "As the published tables call it: sss, sbaa, ...")
       ->required()
       ->type_name(" ");
-  reproducer.add_option("--out", reproduce.out, "Folder for pictures (SVG) and the table (CSV)")
-      ->type_name("DIR");
+  add_report_file(reproducer, reproduce.report);
   reproducer.add_flag("--dry-run", reproduce.dry_run, "List the rows and the runs that stand for them");
   add_common(reproducer, reproduce.common);
 }

@@ -37,6 +37,8 @@ struct ViewArguments {
   std::string scene;
   std::optional<Resolution> resolution;
   std::optional<std::string> camera;  ///< a name or an index
+  std::string camera_eye, camera_target,
+      camera_fov;  ///< a camera that the scene does not hold; empty: none
   std::optional<int> point_lights;
   std::optional<int> anisotropy;
   std::optional<double> exposure;
@@ -174,7 +176,7 @@ struct ValidateArguments : FitArguments {
 struct ReproduceArguments {
   CommonArguments common;
   std::string paper;
-  std::string out;  ///< folder for the pictures; empty: none
+  std::string report;  ///< file of an HTML page; empty: none
   bool dry_run = false;
 };
 

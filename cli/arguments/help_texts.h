@@ -191,7 +191,8 @@ inline constexpr std::string_view kHelpReproduce = R"(Examples:
   hwsim reproduce wire_aa
   hwsim reproduce axaa --dry-run --format csv
 
-A paper's tables, row by row: published beside predicted, with intervals; --out adds pictures.)";
+A paper's tables, row by row: published beside predicted, with intervals. --report shows them as
+the paper lays them out.)";
 
 inline constexpr std::string_view kHelpCompletion = R"(Examples:
   hwsim completion bash

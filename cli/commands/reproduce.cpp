@@ -4,6 +4,7 @@
 
 #include "cli/commands/commands.h"
 #include "cli/commands/lab_options.h"
+#include "cli/commands/report_file.h"
 #include "cli/terminal/answer.h"
 #include "lab/studies/published_runs.h"
 
@@ -36,14 +37,15 @@ void print_both(const Reproduction& reproduction, const CommonArguments& options
 }  // namespace
 
 ExitStatus reproduce(const ReproduceArguments& options, Context& context) {
+  check_report_place(options.report, options.common.force);
   Lab lab(lab_options(options.common, context.log));
   if (options.dry_run) {
     print({.table = plan_table(published_cells({options.paper}, lab.catalog().folder()))}, options.common);
     return ExitStatus::done;
   }
   const Reproduction reproduction = lab.reproduce(options.paper);
-  if (!options.out.empty()) write_pictures(reproduction, options.out);
   print_both(reproduction, options.common);
+  write_report(lab, options.report, context, [&] { return lab.report_of_paper(reproduction); });
   return ExitStatus::done;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "hwsim/config/assign.h"
 #include "hwsim/trace/trace_file.h"
@@ -159,7 +160,9 @@ void run_all(const std::vector<RunPlan>& plans, Report& report, Session& session
 void finish(Report& report, Session& session) {
   offer_gpus(report, session.files());
   offer_what_ifs(report, session.files().folder());
-  report.published = published_points(report, session.files());
+  std::set<std::string> gpus;
+  for (const ReportedPoint& point : report.points) gpus.insert(point.gpu.id);
+  report.belief = belief_of(gpus, session);
   note_limits(report);
   if (const auto calibration = session.files().calibration()) {
     const auto [fast, slow] = extremes_of(report);
@@ -209,13 +212,34 @@ Report gather_report(const std::vector<std::string>& inputs, Session& session) {
 }
 
 Report gather_report(const Request& request, const std::vector<Variation>& variations,
-                     const Comparison& comparison, Session& session) {
+                     const std::optional<Comparison>& comparison, Session& session) {
   Report report;
   const std::vector<RunPlan> plans = plans_of(request, variations, session.files());
   run_all({plans.front()}, report, session);
   report.comparison = comparison;
   add_variations(plans, variations, report);
   finish(report, session);
+  return report;
+}
+
+Report gather_report(const Reproduction& reproduction, Session& session) {
+  Report report;
+  report.title = reproduction.paper + ": published and predicted";
+  report.reproduction = reproduction;
+  report.paper_tables = paper_tables(reproduction, session.files().folder().published());
+  std::set<std::string> gpus, missing;
+  for (const ReproducedRow& row : reproduction.rows) {
+    if (row.cell.has_run) gpus.insert(row.cell.run.gpu);
+    if (row.excluded_because.starts_with("not run")) missing.insert(row.excluded_because);
+  }
+  report.limits.emplace_back(
+      "The scenes are stand-ins that are generated: built to the counts and looks that the paper tells of "
+      "its own.");
+  report.limits.emplace_back(
+      "Fitted times were seen by the fit. The column of scenes held out, and the last section, have those "
+      "that were not.");
+  report.limits.insert(report.limits.end(), missing.begin(), missing.end());
+  report.belief = belief_of(gpus, session);
   return report;
 }
 

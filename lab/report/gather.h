@@ -19,6 +19,9 @@ Report gather_report(const std::vector<std::string>& inputs, Session& session);
 
 /// The points of a request, and its variations as hardware to which they can be moved.
 Report gather_report(const Request& request, const std::vector<Variation>& variations,
-                     const Comparison& comparison, Session& session);
+                     const std::optional<Comparison>& comparison, Session& session);
+
+/// A paper's tables, laid out as the paper has them. It holds no points.
+Report gather_report(const Reproduction& reproduction, Session& session);
 
 }  // namespace hwsim::lab

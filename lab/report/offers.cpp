@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "algos/techniques.h"
 #include "hwsim/config/toml_file.h"
-#include "lab/studies/published_runs.h"
 
 namespace hwsim::lab {
 namespace {
@@ -66,30 +64,6 @@ void offer_what_ifs(Report& report, const ConfigFolder& folder) {
     }
     report.what_ifs.push_back(std::move(what_if));
   }
-}
-
-std::vector<PublishedPoint> published_points(const Report& report, ConfigFiles& files) {
-  const auto calibration = files.calibration();
-  std::vector<PublishedPoint> points;
-  if (!calibration) return points;
-  std::set<std::string> gpus;
-  for (const ReportedPoint& point : report.points)
-    if (calibration->gpu_hashes.contains(point.gpu.id)) gpus.insert(point.gpu.id);
-  for (const cost_models::Cell& cell : published_cells({}, files.folder())) {
-    const auto held = calibration->held_out_ms.find(cell.row.id());
-    const bool wanted = gpus.empty() || gpus.contains(cell.run.gpu);
-    if (held == calibration->held_out_ms.end() || cell.unit != "ms" || !wanted) continue;
-    const cost_models::PublishedRow& row = cell.row;
-    points.push_back({.row = row.id(),
-                      .paper = row.document,
-                      .gpu = cell.run.gpu,
-                      .technique = cell.run.technique,
-                      .scene = row.scene + (row.view.empty() ? "" : ", " + row.view),
-                      .what = row.pass,
-                      .published_ms = cell.published,
-                      .held_out_ms = held->second});
-  }
-  return points;
 }
 
 void note_limits(Report& report) {

@@ -1,5 +1,5 @@
 #pragma once
-// What a report offers beside its points: other hardware, and what is known of how far to believe it.
+// What a report offers beside its points: other hardware, and what its readers must know.
 #include "lab/catalog/config_files.h"
 #include "lab/report/report.h"
 
@@ -10,10 +10,6 @@ void offer_gpus(Report& report, ConfigFiles& files);
 
 /// Every overlay that comes with hwsim.
 void offer_what_ifs(Report& report, const ConfigFolder& folder);
-
-/// Published times on the GPUs of the report, or on all calibrated ones where it has none of these, beside
-/// their held-out predictions.
-std::vector<PublishedPoint> published_points(const Report& report, ConfigFiles& files);
 
 /// What its readers must know of the frames: what is not modeled, extrapolated, or by default.
 void note_limits(Report& report);

@@ -8,6 +8,7 @@
 #include "lab/base/base64.h"
 #include "lab/base/build_info.h"
 #include "lab/report/html.h"
+#include "lab/report/paper_html.h"
 #include "lab/report/static_tables.h"
 #include "lab/results/results.h"
 #include "pipeline/image/metrics.h"
@@ -146,41 +147,79 @@ std::string studies_of(const Report& report) {
   return html;
 }
 
+std::string belief_of(const Belief& belief) {
+  if (belief.times.empty())
+    return "<p>This configuration holds no fit, so nothing says how far times are off.</p>";
+  const auto folded = [](const char* name, const Table& table) {
+    return table.rows.empty()
+               ? std::string()
+               : fmt::format("<details><summary>{0}</summary>{1}</details>\n", name, html_table(table, name));
+  };
+  return html_table(error_table(belief), "errors on what no fit saw") +
+         folded("published times", published_table(belief)) +
+         folded("published ratios", ratio_table(belief)) + folded("other renderers", external_table(belief));
+}
+
+std::string belief_section(const Report& report) {
+  return section(
+      "belief", "Can I believe it",
+      "Published times and ratios beside predictions by fits that had not seen their scene; below them "
+      "other renderers' times, which no fit saw.",
+      belief_of(report.belief));
+}
+
 /// Everything but the pictures, whose place is between the two.
 struct Body {
   std::string before, after;
 };
 
-Body body_of(const Report& report) {
+/// A page of a paper's tables: it holds no frame that could be moved.
+Body paper_body(const Report& report) {
+  Body body{.before = "<main>\n", .after = {}};
+  std::string tables;
+  for (const PaperTable& table : report.paper_tables) tables += html_paper_table(table, *report.reproduction);
+  body.before +=
+      section("paper", "The paper's tables",
+              "Published, then predicted, then the error. Bold: the published value lies outside of the "
+              "prediction's 90 % interval.",
+              tables + paper_notes(*report.reproduction));
+  body.before +=
+      section("residuals", "Where it errs", "Predicted over published, by stage and technique.",
+              "<details><summary>every row</summary>" +
+                  html_table(short_reproduction_table(*report.reproduction), "rows") + "</details>");
+  body.after = belief_section(report) + "</main>\n";
+  return body;
+}
+
+std::string frame_sections(const Report& report) {
   const auto tables = [&](Table (*table_of)(const ReportedPoint&)) {
     return tables_of_points(report, table_of);
   };
+  return section("units", "Units and passes",
+                 "How much of a pass's time each unit has to work: above 80 % it is close to its peak.",
+                 "<p>The tables of passes above have the shares.</p>") +
+         section("bytes", "DRAM bytes by stream", "Which data a pass moves.", tables(byte_table)) +
+         section("roofline", "Roofline", "Arithmetic of each pass against its bytes from DRAM.",
+                 "<p>Drawn with scripts.</p>") +
+         section("tornado", "What matters", "Exact derivatives of the frame's time.",
+                 tables(influence_table)) +
+         section("memory", "Memory over the frame", "What is alive in each pass.", tables(memory_table)) +
+         section("flow", "Raster data flow", "What enters a stage, what it kills, what leaves it.",
+                 tables(flow_table));
+}
+
+Body body_of(const Report& report) {
+  if (report.points.empty()) return paper_body(report);
   Body body{.before = "<main>\n", .after = {}};
   body.before +=
       section("hardware", "Move the hardware",
               "The program's own timing engine replays the counted work of a frame, here in the page.",
-              html_table(point_table(report), "points") + tables(pass_table));
+              html_table(point_table(report), "points") +
+                  tables_of_points(report, [](const ReportedPoint& point) { return pass_table(point); }));
   body.before += studies_of(report);
   body.before += section("pareto", "Error against time", "Below and left is better.",
                          "<p>The table of points above has both.</p>");
-  body.after +=
-      section("units", "Units and passes",
-              "How much of a pass's time each unit has to work: above 80 % it is close to its peak.",
-              "<p>The tables of passes above have the shares.</p>");
-  body.after += section("bytes", "DRAM bytes by stream", "Which data a pass moves.", tables(byte_table));
-  body.after += section("roofline", "Roofline", "Arithmetic of each pass against its bytes from DRAM.",
-                        "<p>Drawn with scripts.</p>");
-  body.after +=
-      section("tornado", "What matters", "Exact derivatives of the frame's time.", tables(influence_table));
-  body.after +=
-      section("memory", "Memory over the frame", "What is alive in each pass.", tables(memory_table));
-  body.after += section("flow", "Raster data flow", "What enters a stage, what it kills, what leaves it.",
-                        tables(flow_table));
-  body.after += section("belief", "Can I believe it",
-                        "Published times beside predictions by a fit that had not seen their scene.",
-                        report.published.empty() ? "<p>No time was published for these GPUs.</p>"
-                                                 : html_table(published_table(report), "published times"));
-  body.after += "</main>\n";
+  body.after = frame_sections(report) + belief_section(report) + "</main>\n";
   return body;
 }
 
@@ -211,6 +250,7 @@ std::string page_of(const Report& report, const PageParts& parts) {
   const std::string end = body.after + scripts_of(report, parts) + "</body></html>\n";
   const std::size_t used = start.size() + end.size() + kSpareBytes;
   const std::size_t budget = kPageBytesMax > used ? kPageBytesMax - used : 0;
+  if (report.points.empty()) return start + end;
   return start +
          section("pictures", "Pictures", "Color, error against the ray-traced reference, and shading.",
                  figures_of(report, budget)) +

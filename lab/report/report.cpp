@@ -119,17 +119,6 @@ Json what_if_json(const WhatIf& what_if) {
   return {{"name", what_if.name}, {"about", what_if.about}, {"changes", changes}};
 }
 
-Json published_json(const PublishedPoint& point) {
-  return {{"row", point.row},
-          {"paper", point.paper},
-          {"gpu", point.gpu},
-          {"technique", point.technique},
-          {"scene", point.scene},
-          {"what", point.what},
-          {"published_ms", point.published_ms},
-          {"held_out_ms", point.held_out_ms}};
-}
-
 template <class T, class Function>
 Json list_of(const std::vector<T>& parts, const Function& json_of) {
   Json json = Json::array();
@@ -195,6 +184,16 @@ std::string ranking_sentence(const Ranking& ranking) {
       best.aa_ms, best.extra_mib, best.verdict);
 }
 
+std::string reproduction_sentence(const Reproduction& reproduction) {
+  if (!reproduction.figures) return "No fitted time of " + reproduction.paper + " could be predicted.";
+  const cost_models::Figures& f = *reproduction.figures;
+  return fmt::format(
+      "Of {}'s {} fitted times, predictions miss by {:.1f} % in the mean and {:.1f} % in the median; {:.0f} "
+      "% lie within "
+      "their 90 % intervals.",
+      reproduction.paper, f.cells, f.mape_pct, f.median_ape_pct, f.coverage90_pct);
+}
+
 }  // namespace
 
 std::pair<const Result*, const Result*> extremes_of(const Report& report) {
@@ -204,6 +203,7 @@ std::pair<const Result*, const Result*> extremes_of(const Report& report) {
 }
 
 std::string answer_of(const Report& report) {
+  if (report.reproduction) return reproduction_sentence(*report.reproduction);
   if (report.ranking && !report.ranking->techniques.empty()) return ranking_sentence(*report.ranking);
   if (report.comparison && !report.comparison->differences.empty())
     return change_sentence(*report.comparison);
@@ -217,25 +217,27 @@ Json to_json(const Report& report) {
     return Json{{"label", v.label}, {"point", v.point}, {"values", values_json(v.gpu)}};
   };
   const auto region_json = [](const Region& r) { return Json{{"x", r.x}, {"y", r.y}, {"side", r.side}}; };
-  return {{"schema_version", kReportSchemaVersion},
-          {"version", build.version},
-          {"commit", build.commit},
-          {"command", report.command},
-          {"title", report.title},
-          {"answer", answer_of(report)},
-          {"limits", report.limits},
-          {"keys", keys_json()},
-          {"gpus", list_of(report.gpus, gpu_json)},
-          {"catalog_hashes", report.catalog_hashes},
-          {"intervals", intervals_json(report.intervals)},
-          {"points", list_of(report.points, point_json)},
-          {"what_ifs", list_of(report.what_ifs, what_if_json)},
-          {"variations", list_of(report.variations, variation_json)},
-          {"regions", list_of(report.regions, region_json)},
-          {"ranking", report.ranking ? to_json(*report.ranking) : Json(nullptr)},
-          {"comparison", report.comparison ? to_json(*report.comparison) : Json(nullptr)},
-          {"sweep", report.sweep ? to_json(*report.sweep) : Json(nullptr)},
-          {"published", list_of(report.published, published_json)}};
+  Json json = {{"schema_version", kReportSchemaVersion},
+               {"version", build.version},
+               {"commit", build.commit},
+               {"command", report.command},
+               {"title", report.title},
+               {"answer", answer_of(report)},
+               {"limits", report.limits},
+               {"keys", keys_json()},
+               {"gpus", list_of(report.gpus, gpu_json)},
+               {"catalog_hashes", report.catalog_hashes},
+               {"intervals", intervals_json(report.intervals)},
+               {"points", list_of(report.points, point_json)},
+               {"what_ifs", list_of(report.what_ifs, what_if_json)},
+               {"variations", list_of(report.variations, variation_json)},
+               {"regions", list_of(report.regions, region_json)},
+               {"ranking", report.ranking ? to_json(*report.ranking) : Json(nullptr)},
+               {"comparison", report.comparison ? to_json(*report.comparison) : Json(nullptr)},
+               {"sweep", report.sweep ? to_json(*report.sweep) : Json(nullptr)},
+               {"reproduction", report.reproduction ? to_json(*report.reproduction) : Json(nullptr)}};
+  json.update(to_json(report.belief));
+  return json;
 }
 
 }  // namespace hwsim::lab

@@ -10,8 +10,10 @@
 #include "cost_models/intervals.h"
 #include "hwsim/gpu/gpu_config.h"
 #include "lab/base/table.h"
+#include "lab/report/belief.h"
 #include "lab/report/pictures.h"
 #include "lab/studies/explanation.h"
+#include "lab/studies/paper_layout.h"
 #include "lab/studies/ranking.h"
 
 namespace hwsim::lab {
@@ -63,12 +65,6 @@ struct TriedVariation {
   GpuConfig gpu{};
 };
 
-/// A published time beside what a fit predicted that did not see its scene.
-struct PublishedPoint {
-  std::string row{}, paper{}, gpu{}, technique{}, scene{}, what{};
-  double published_ms = 0.0, held_out_ms = 0.0;
-};
-
 struct Report {
   std::string command{};  ///< that repeats it
   std::string title{};
@@ -85,11 +81,13 @@ struct Report {
   std::optional<Ranking> ranking{};
   std::optional<Comparison> comparison{};
   std::optional<Table> sweep{};
-  std::vector<PublishedPoint> published{};
+  std::optional<Reproduction> reproduction{};
+  std::vector<PaperTable> paper_tables{};  ///< those of the reproduction
+  Belief belief{};
   std::vector<std::string> limits{};  ///< what is not modeled, extrapolated, or by default
 };
 
-/// The fastest and the slowest of the points; there must be one.
+/// The fastest and the slowest of the points, of which there must be one.
 std::pair<const Result*, const Result*> extremes_of(const Report& report);
 
 /// The answer in a sentence: what was found, with its interval.

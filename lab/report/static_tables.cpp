@@ -106,21 +106,4 @@ Table memory_table(const ReportedPoint& point) {
   return table;
 }
 
-Table published_table(const Report& report) {
-  Table table{{{"paper", "paper"},
-               {"gpu", "GPU"},
-               {"technique", "technique"},
-               {"scene", "scene"},
-               {"what", "what"},
-               {"published_ms", "published ms", true},
-               {"held_out_ms", "predicted ms", true},
-               {"ratio", "predicted / published", true},
-               {"row", "row"}},
-              {}};
-  for (const PublishedPoint& p : report.published)
-    table.rows.push_back({p.paper, p.gpu, p.technique, p.scene, p.what, Real{p.published_ms, 3},
-                          Real{p.held_out_ms, 3}, Real{p.held_out_ms / p.published_ms, 2}, p.row});
-  return table;
-}
-
 }  // namespace hwsim::lab

@@ -13,6 +13,5 @@ Table byte_table(const ReportedPoint& point);       ///< a row a pass: DRAM byte
 Table flow_table(const ReportedPoint& point);       ///< a row a stage: in, killed, out
 Table influence_table(const ReportedPoint& point);  ///< a row a number of the GPU that matters
 Table memory_table(const ReportedPoint& point);     ///< a row an image or buffer
-Table published_table(const Report& report);        ///< a row a published time
 
 }  // namespace hwsim::lab

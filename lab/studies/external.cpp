@@ -155,7 +155,8 @@ cost_models::TraceSource external_traces(const std::string& scenes_folder, Sessi
   };
 }
 
-ExternalValidation validate_external(const cost_models::TraceSource& traces, Session& session) {
+ExternalValidation validate_external(const cost_models::TraceSource& traces, Session& session,
+                                     const std::function<void(double, const std::string&)>& progress) {
   const auto calibration = session.files().calibration();
   const std::vector<Cell> cells = external_cells(session.files().folder());
   ExternalValidation validation;
@@ -165,12 +166,10 @@ ExternalValidation validate_external(const cost_models::TraceSource& traces, Ses
       validation.not_run.push_back({cell.row.id(), cell.reason});
       continue;
     }
-    session.observer().progress(static_cast<double>(i) / static_cast<double>(cells.size()),
-                                cell.run.to_string());
+    if (progress) progress(static_cast<double>(i) / static_cast<double>(cells.size()), cell.run.to_string());
     const GpuConfig gpu = session.files().gpu(cell.run.gpu, {}, {}, true);
     validation.rows.push_back(predicted_row(cell, *traces(cell.run, gpu), gpu, calibration.get()));
   }
-  session.observer().progress_ended();
   std::vector<const ExternalRow*> all;
   for (const ExternalRow& row : validation.rows) all.push_back(&row);
   validation.all = errors_of_rows(all);

@@ -2,6 +2,7 @@
 // Times of other renderers (configs/external) beside what the calibration says of their frames: no fit has
 // seen them.
 #include <array>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -54,7 +55,9 @@ std::vector<cost_models::Cell> external_cells(const ConfigFolder& folder);
 /// emulates. `session` must outlive it. Throws InputError M008 where nothing is kept.
 cost_models::TraceSource external_traces(const std::string& scenes_folder, Session& session);
 
-ExternalValidation validate_external(const cost_models::TraceSource& traces, Session& session);
+/// `progress` is told the part that is done, and the run that comes.
+ExternalValidation validate_external(const cost_models::TraceSource& traces, Session& session,
+                                     const std::function<void(double, const std::string&)>& progress = {});
 
 nlohmann::ordered_json to_json(const ExternalValidation& validation);
 

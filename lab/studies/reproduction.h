@@ -42,7 +42,4 @@ nlohmann::ordered_json to_json(const Reproduction& reproduction);
 /// nlohmann::json::exception where a field is missing or of another type.
 Reproduction reproduction_from_json(const std::string& paper, const nlohmann::ordered_json& json);
 
-/// PAPER_scatter.svg, PAPER_residuals.svg and PAPER.csv.
-void write_pictures(const Reproduction& reproduction, const std::string& folder);
-
 }  // namespace hwsim::lab

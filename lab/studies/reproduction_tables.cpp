@@ -1,18 +1,12 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <filesystem>
 
-#include "lab/base/files.h"
-#include "lab/results/scatter_plot.h"
 #include "lab/studies/reproduction.h"
 
 namespace hwsim::lab {
 namespace {
 
-namespace fs = std::filesystem;
-using cost_models::HeldOut;
 using cost_models::PublishedRow;
 using cost_models::RowUse;
 using Json = nlohmann::ordered_json;
@@ -84,39 +78,6 @@ std::vector<TableCell> short_row(const ReproducedRow& row) {
           row.excluded_because};
 }
 
-Plot scatter_of(const Reproduction& reproduction) {
-  return {.title = "Published and predicted times: " + reproduction.paper,
-          .x_label = "published, ms",
-          .y_label = "predicted, ms",
-          .points = {},
-          .log_x = true,
-          .log_y = true,
-          .diagonal = true,
-          .x_names = {}};
-}
-
-Plot residuals_of(const Reproduction& reproduction) {
-  return {.title = "Errors by pass: " + reproduction.paper,
-          .x_label = "",
-          .y_label = "predicted over published, %",
-          .points = {},
-          .x_names = {}};
-}
-
-void add_point(const cost_models::Cell& cell, const HeldOut& p, Plot& scatter, Plot& residuals) {
-  const std::string label = fmt::format("{} {} {}: published {:.2f}, predicted {:.2f} ms", cell.row.scene,
-                                        cell.row.technique, cell.row.pass, cell.published, p.predicted_ms);
-  const bool hollow = cell.use == RowUse::derived;
-  scatter.points.push_back(
-      {cell.published, p.predicted_ms, p.low_ms, p.high_ms, cell.row.scene, label, hollow});
-  const std::string name = cell.row.technique + " " + cell.row.pass;
-  auto at = std::find(residuals.x_names.begin(), residuals.x_names.end(), name);
-  if (at == residuals.x_names.end()) at = residuals.x_names.insert(at, name);
-  residuals.points.push_back({static_cast<double>(at - residuals.x_names.begin()),
-                              (p.predicted_ms / cell.published - 1.0) * 100.0, 0.0, 0.0, cell.row.scene,
-                              label, hollow});
-}
-
 }  // namespace
 
 Table reproduction_table(const Reproduction& reproduction) {
@@ -174,21 +135,6 @@ Reproduction reproduction_from_json(const std::string& paper, const Json& json) 
     reproduction.rows.push_back(std::move(row));
   }
   return reproduction;
-}
-
-void write_pictures(const Reproduction& reproduction, const std::string& folder) {
-  fs::create_directories(folder);
-  Plot scatter = scatter_of(reproduction), residuals = residuals_of(reproduction);
-  for (const HeldOut& p : reproduction.predictions) {
-    const cost_models::Cell& cell = reproduction.rows[p.cell].cell;
-    if (cell.use == RowUse::fitted || cell.use == RowUse::derived) add_point(cell, p, scatter, residuals);
-  }
-  const auto place = [&](const char* ending) {
-    return (fs::path(folder) / (reproduction.paper + ending)).string();
-  };
-  write_file(place("_scatter.svg"), to_svg(scatter));
-  write_file(place("_residuals.svg"), to_svg(residuals));
-  write_file(place(".csv"), to_csv(reproduction_table(reproduction)));
 }
 
 }  // namespace hwsim::lab

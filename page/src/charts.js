@@ -44,6 +44,7 @@ export function chart(mount, options) {
   const node = Plot.plot({
     width,
     marginLeft: options.marginLeft ?? (small ? 96 : 150),
+    marginBottom: 42,
     style: { background: "transparent", color: "inherit", fontSize: "13px", overflow: "visible" },
     ...options,
   });

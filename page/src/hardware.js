@@ -12,6 +12,7 @@ const KNOBS = [
   { label: "Texture rate", keys: ["tex_bilinear_per_clk"], unit: "a clock" },
   { label: "Set-up rate", keys: ["setup_drawn_triangles_per_clk", "setup_culled_triangles_per_clk"], unit: "a clock" },
   { label: "L2", keys: ["l2_size_kib"], unit: "KiB" },
+  { label: "Last-level cache", keys: ["llc_size_kib"], unit: "KiB", start: 1024 },
   { label: "L2 bandwidth", keys: ["l2_bytes_per_clk"], unit: "B a clock" },
   { label: "DRAM", keys: ["dram_bandwidth_gb_s"], unit: "GB/s" },
   { label: "DRAM latency", keys: ["dram_latency_cycles"], unit: "cycles" },
@@ -28,6 +29,10 @@ const STEPS = 12; // of a slider, each way: a quarter of an octave each
 
 const factorOf = (step) => 2 ** (step / 4);
 const stepOf = (factor) => Math.round(4 * Math.log2(factor));
+
+// A slider at a step: a multiple of what the GPU has; where it has none, `start` and its doubles.
+const valueAt = ({ start }, base, step) => (base > 0 ? base * factorOf(step) : step > 0 ? start * 2 ** (step - 1) : 0);
+const stepAt = ({ start }, base, value) => (base > 0 ? stepOf(value / base) : value > 0 && start ? Math.round(Math.log2(value / start)) + 1 : 0);
 const timesText = (factor) => (Math.abs(factor - 1) < 1e-9 ? "as it is" : `x ${shown(factor)}`);
 
 // A value that the key takes: whole, within its range.
@@ -98,7 +103,6 @@ export class HardwarePanel {
       return { key, box, node: element("label", { class: "switch" }, box, label) };
     });
     const greyed = [
-      ["Last-level cache", "the model has none behind the L2"],
       ["Sample counts, conservative raster, multicast", "need a new emulation: they change the frame's work"],
       ["Hierarchical depth, vertex cache", "need a new emulation: they change the frame's work"],
     ];
@@ -127,7 +131,7 @@ export class HardwarePanel {
       const { model, state } = this.page;
       for (const key of knob.keys) {
         const base = model.data.gpus[state.gpu].values[key];
-        sets[key] = Number(range.value) === 0 ? base : fitted(model.keys.get(key), base * factorOf(Number(range.value)));
+        sets[key] = Number(range.value) === 0 ? base : fitted(model.keys.get(key), valueAt(knob, base, Number(range.value)));
       }
       this.page.set(sets);
     });
@@ -154,8 +158,9 @@ export class HardwarePanel {
     for (const { knob, range, text } of this.sliders) {
       const [key] = knob.keys;
       const factor = base[key] > 0 ? values[key] / base[key] : 1;
-      range.value = String(Math.max(-STEPS, Math.min(STEPS, stepOf(factor))));
-      text.textContent = `${shown(values[key], 4).replace(/\.0+$/, "")}${knob.unit ? ` ${knob.unit}` : ""}, ${timesText(factor)}`;
+      range.value = String(Math.max(-STEPS, Math.min(STEPS, stepAt(knob, base[key], values[key]))));
+      const against = base[key] > 0 || values[key] === 0 ? timesText(factor) : "where there is none";
+      text.textContent = `${shown(values[key], 4).replace(/\.0+$/, "")}${knob.unit ? ` ${knob.unit}` : ""}, ${against}`;
       range.setAttribute("aria-valuetext", text.textContent);
     }
     for (const { key, box } of this.switches) box.checked = Boolean(values[key]);

@@ -3,7 +3,7 @@ import { addCsvButtons, copy, element } from "./dom.js";
 import { bytesOfBase64, Engine } from "./engine.js";
 import { HardwarePanel } from "./hardware.js";
 import { Model } from "./model.js";
-import { drawBelief, drawSweep, ParetoPanel } from "./overview.js";
+import { drawBelief, drawResiduals, drawSweep, ParetoPanel } from "./overview.js";
 import { PicturePanel } from "./pictures.js";
 import { drawBytes, drawFlow, drawMemory, drawRoofline, drawTornado, drawUnits } from "./studies.js";
 
@@ -31,6 +31,7 @@ class Page {
   #fromAddress() {
     const words = new URLSearchParams(location.hash.slice(1));
     const { data, keys } = this.model;
+    if (data.points.length === 0) return {};
     const number = Number(words.get("point") ?? 0);
     const point = Number.isInteger(number) && data.points[number] ? number : 0;
     const named = data.gpus.findIndex((gpu) => gpu.hash === words.get("gpu"));
@@ -66,14 +67,21 @@ class Page {
   }
 
   start() {
+    guard("residuals", (mount) => drawResiduals(mount, this));
+    guard("belief", (mount) => drawBelief(mount, this));
+    if (this.model.data.points.length > 0) this.#startFrames();
+    else this.#ready();
+    addEventListener("beforeprint", () => document.querySelectorAll("details.data").forEach((node) => (node.open = true)));
+  }
+
+  // What shows frames that can be moved.
+  #startFrames() {
     guard("pareto", (mount) => new ParetoPanel(mount, this));
     guard("pictures", (mount) => new PicturePanel(mount, this));
-    guard("belief", (mount) => drawBelief(mount, this));
     guard("sweep", (mount) => drawSweep(mount, this));
     if (this.model.engine) guard("hardware", (mount) => (this.hardware = new HardwarePanel(mount, this)));
     this.hardware?.update();
     this.#redraw();
-    addEventListener("beforeprint", () => document.querySelectorAll("details.data").forEach((node) => (node.open = true)));
     addEventListener("hashchange", () => this.move(this.#fromAddress()));
   }
 
@@ -84,6 +92,10 @@ class Page {
           mount.replaceChildren();
           draw(mount, this);
         });
+    this.#ready();
+  }
+
+  #ready() {
     addCsvButtons(document);
     document.documentElement.dataset.drawn = JSON.stringify(this.state);
   }
@@ -107,8 +119,19 @@ async function engineOfPage() {
   return text ? Engine.load(bytesOfBase64(text)) : null;
 }
 
+// Control characters, and what turns the direction of writing, as hwsim's printable() shows them: what is copied from the
+// page goes into terminals.
+const UNPRINTABLE = /[\u0000-\u0008\u000b\u000c\u000e-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff]/g;
+function printable(_, value) {
+  if (typeof value !== "string") return value;
+  return value.replace(UNPRINTABLE, (c) => {
+    const code = c.charCodeAt(0);
+    return code < 0x100 ? `\\x${code.toString(16).padStart(2, "0")}` : `\\u${code.toString(16).padStart(4, "0")}`;
+  });
+}
+
 async function main() {
-  const data = JSON.parse(document.getElementById("report-data").textContent);
+  const data = JSON.parse(document.getElementById("report-data").textContent, printable);
   const engine = await engineOfPage();
   const page = new Page(new Model(data, engine));
   window.hwsimReport = page; // for the console, and for tests

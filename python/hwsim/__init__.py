@@ -17,7 +17,7 @@ the same methods. ``docs/python.md`` is the tutorial.
 
 from __future__ import annotations
 
-import os
+from pathlib import Path as _Path
 from typing import Any, Mapping, Sequence
 
 import numpy as _np
@@ -27,11 +27,12 @@ from ._core import __version__
 from ._errors import Diagnostic, InputError, InternalError
 from ._frame import Frame, PassWork
 from ._gpu import Gpu, KeyInfo, Origin, Value, gpu_keys
-from ._lab import GpuLike, Lab, Ranking, Scene, SceneLike, Validation, View
+from ._lab import FileLike, GpuLike, Lab, Ranking, Scene, Validation
 from ._progress import ProgressTo
 from ._sweep import Sweep
 from ._tables import Table
 from ._timing import Comparison, Explanation, Gradient, PassTiming, Ratio, Timing, compare_timings, ratio
+from ._view import SceneLike, View
 
 __all__ = [
     "Comparison",
@@ -69,6 +70,8 @@ __all__ = [
     "rank",
     "ratio",
     "reference",
+    "report",
+    "report_of",
     "scene",
     "scenes",
     "show_progress",
@@ -220,6 +223,44 @@ def sweep(
 ) -> Sweep:
     """Times over a grid of techniques, GPUs and whatever else varies. Raises InputError. See :meth:`Lab.sweep`."""
     return default_lab().sweep(scene, techniques, gpus, vary, engine=engine)
+
+
+def report(
+    file: FileLike,
+    scene: SceneLike,
+    techniques: str | Sequence[str] = "none",
+    gpus: str | Sequence[str] = "gtx980",
+    *,
+    what_if: str | Sequence[str] = (),
+    reference_samples: int = 16,
+    resolution: tuple[int, int] | None = None,
+    camera: str | int | None = None,
+    settings: Mapping[str, Value] | None = None,
+    force: bool = False,
+) -> _Path:
+    """One HTML page of techniques on GPUs, in which the hardware can be moved; returns its path. See :meth:`Lab.report`."""
+    return default_lab().report(
+        file,
+        scene,
+        techniques,
+        gpus,
+        what_if=what_if,
+        reference_samples=reference_samples,
+        resolution=resolution,
+        camera=camera,
+        settings=settings,
+        force=force,
+    )
+
+
+def report_of(
+    file: FileLike,
+    results: FileLike | Sequence[FileLike],
+    *,
+    force: bool = False,
+) -> _Path:
+    """The page of what the program ``hwsim`` wrote: folders, a sweep's database, JSON. See :meth:`Lab.report_of`."""
+    return default_lab().report_of(file, results, force=force)
 
 
 def validate(papers: str | Sequence[str]=()) -> Validation:

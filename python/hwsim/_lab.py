@@ -19,54 +19,12 @@ from ._progress import Listener, ProgressTo
 from ._sweep import Sweep
 from ._tables import Table, table_of
 from ._timing import Comparison
+from ._view import SceneLike, View, view_of
 
-__all__ = ["Lab", "Ranking", "Scene", "Validation", "View"]
+__all__ = ["FileLike", "GpuLike", "Lab", "Ranking", "Scene", "Validation"]
 
 GpuLike = Union[Gpu, str]
-
-
-@dataclass(frozen=True)
-class View:
-    """What is drawn, before any technique."""
-
-    scene: str  #: a .gltf or .glb file, a generator with parameters ("grass:seed=3"), or an image
-    resolution: tuple[int, int] = (1280, 720)  #: (width, height) in pixels, each 1 to 16384
-    camera: str | int = 0  #: name or index of a camera of the scene
-    point_lights: int = 0  #: seeded lights that are added, 0 to 1024
-    light_range: float = 0.15  #: reach of lights that are added, over the scene's diagonal
-    light_strength: float = 1.0  #: factor on their light
-    light_range_from: float = 0.0  #: least reach of an added light, in the scene's unit
-    light_range_to: float = 0.0  #: greatest reach; 0: all have ``light_range``
-    light_box_x: float = 0.0  #: side of the box that added lights lie in; 0: the scene's own
-    light_box_y: float = 0.0  #: the same along y
-    light_box_z: float = 0.0  #: the same along z
-    light_seed: int = 0  #: another number: other places and colors of added lights
-    lights: str = "scene"  #: "scene", "simple" (one light), "complex" (16 lights) or "added"
-    shadows: bool = True  #: a shadow map for the light that casts shadows
-    shadow_map_px: int = 2048  #: side of the shadow map
-    metal_ambient: bool = True  #: metals reflect ambient light
-    anisotropy: int = 1  #: probes of a texture request at most, 1 to 16
-    alpha_test: bool = True  #: alpha-tested surfaces have holes
-    reference_shadows: str = "map"  #: the reference's shadows: "map" or "rays"
-    exposure: float = 0.0  #: factor of the file's lights; 0: automatic
-    memory_mib: int = 2048  #: memory that loading the scene may take
-
-    def words(self) -> dict[str, Any]:
-        """By the names of ``run.toml``."""
-        words = {f.name: getattr(self, f.name) for f in fields(self)}
-        words["width_px"], words["height_px"] = words.pop("resolution")
-        words["camera"] = str(self.camera)
-        words["scene"] = os.fspath(self.scene)
-        return words
-
-
-SceneLike = Union[View, str, "os.PathLike[str]"]
-
-
-def _view(scene: SceneLike, changes: Mapping[str, Any]) -> View:
-    given = {name: value for name, value in changes.items() if value is not None}
-    view = scene if isinstance(scene, View) else View(os.fspath(scene))
-    return replace(view, **given)
+FileLike = Union[str, "os.PathLike[str]"]
 
 
 @dataclass(frozen=True)
@@ -141,6 +99,13 @@ def _installed_configs() -> str | None:
 
 def _listed(one_or_more: str | Sequence[str]) -> list[str]:
     return [one_or_more] if isinstance(one_or_more, str) else list(one_or_more)
+
+
+def _free_place(file: FileLike, force: bool) -> Path:
+    place = Path(file)
+    if place.exists() and not force:
+        raise FileExistsError(f"{place} is there already: force=True replaces it")
+    return place
 
 
 class Lab:
@@ -219,7 +184,7 @@ class Lab:
 
     def scene(self, scene: SceneLike) -> Scene:
         """Name, cameras and the loader's notes of a scene. Raises InputError."""
-        data = self._core.scene(self._words(_view(scene, {}), []))
+        data = self._core.scene(self._words(view_of(scene, {}), []))
         notes = tuple(Diagnostic(**note) for note in data["notes"])
         return Scene(data["name"], data["content_hash"], tuple(data["cameras"]), notes)
 
@@ -254,7 +219,7 @@ class Lab:
         :param engine: "queue", "roofline" or "detailed"
         :param settings: what ``--set`` takes: {"scene.lights": "complex", "emulator.skip": "none"}
         """
-        view = _view(scene, {"resolution": resolution, "camera": camera})
+        view = view_of(scene, {"resolution": resolution, "camera": camera})
         how = {"reference_samples": reference_samples, "images": images, "engine": engine}
         on = self.gpu(gpu)
         words = self._words(view, [technique], how, settings)
@@ -262,7 +227,7 @@ class Lab:
 
     def reference(self, scene: SceneLike, samples: int = 64) -> npt.NDArray[np.float32]:
         """The ray-traced truth of a view: float32, (height, width, 4), linear RGBA. Raises InputError."""
-        picture: npt.NDArray[np.float32] = self._core.reference(self._words(_view(scene, {}), []), samples)
+        picture: npt.NDArray[np.float32] = self._core.reference(self._words(view_of(scene, {}), []), samples)
         return picture
 
     def rank(
@@ -281,7 +246,7 @@ class Lab:
 
         :param budget: "aa_ms<=1.5, extra_mib<=192"; empty: none
         """
-        view = _view(scene, {"resolution": resolution, "camera": camera})
+        view = view_of(scene, {"resolution": resolution, "camera": camera})
         how = {"reference_samples": reference_samples, "images": False}
         words = self._words(view, _listed(techniques), how, settings)
         return Ranking(self._core.rank(words, self.gpu(gpu)._core, budget))
@@ -303,7 +268,7 @@ class Lab:
 
         :param what_if: names of :meth:`overlays`, each tried alone; "a+b" lays both
         """
-        view = _view(scene, {"resolution": resolution, "camera": camera})
+        view = view_of(scene, {"resolution": resolution, "camera": camera})
         words = self._words(view, _listed(techniques), {"images": False}, settings)
         return Comparison(self._core.compare(words, _listed(gpus), _listed(what_if)))
 
@@ -322,8 +287,56 @@ class Lab:
         values as ``--set`` takes them ("x2" for twice a number of the GPU), and the fields of a View, such as
         "resolution" and "camera". All points are checked before the first one is drawn, and each frame is drawn once.
         """
-        grid = _Grid(self, _view(scene, {}), _listed(techniques), gpus, vary or {}, engine)
+        grid = _Grid(self, view_of(scene, {}), _listed(techniques), gpus, vary or {}, engine)
         return grid.run()
+
+    def report(
+        self,
+        file: FileLike,
+        scene: SceneLike,
+        techniques: str | Sequence[str] = "none",
+        gpus: str | Sequence[str] = "gtx980",
+        *,
+        what_if: str | Sequence[str] = (),
+        reference_samples: int = 16,
+        resolution: tuple[int, int] | None = None,
+        camera: str | int | None = None,
+        settings: Mapping[str, Value] | None = None,
+        force: bool = False,
+    ) -> Path:
+        """One HTML page of techniques on GPUs, in which the hardware can be moved; returns its path.
+
+        Raises InputError, and FileExistsError for a file that is there already.
+
+        :param what_if: names of :meth:`overlays`, each tried alone: their changes are shown
+        :param reference_samples: rays a pixel of the reference that the images are compared with; 0: none
+        :param force: replace the file
+        """
+        place = _free_place(file, force)
+        view = view_of(scene, {"resolution": resolution, "camera": camera})
+        words = self._words(view, _listed(techniques), {"reference_samples": reference_samples}, settings)
+        again = f"hwsim.report({str(file)!r}, {view!r}, {techniques!r}, {gpus!r}, what_if={what_if!r})"
+        self._core.report(words, _listed(gpus), _listed(what_if), str(place), again)
+        return place
+
+    def report_of(
+        self,
+        file: FileLike,
+        results: FileLike | Sequence[FileLike],
+        *,
+        force: bool = False,
+    ) -> Path:
+        """The page of what the program ``hwsim`` wrote: folders of runs and rankings, a sweep's database, JSON.
+
+        Returns its path. Raises InputError, and FileExistsError for a file that is there already.
+
+        :param force: replace the file
+        """
+        place = _free_place(file, force)
+        given = [results] if isinstance(results, (str, os.PathLike)) else list(results)
+        inputs = [os.fspath(result) for result in given]
+        self._core.report_of(inputs, str(place), f"hwsim.report_of({str(file)!r}, {inputs!r})")
+        return place
 
     def validate(self, papers: str | Sequence[str] = ()) -> Validation:
         """Fits to published times, and tells the errors on those that a fit did not see. Takes minutes for all papers.

@@ -36,16 +36,18 @@ TEST(Published, PapersAreFilteredAndUnknownOnesRefused) {
   EXPECT_NE(outcome.err.find("did you mean `sbaa`?"), std::string::npos) << outcome.err;
 }
 
-TEST(Published, ReproduceWritesTheColumnsOfTheContractAndPictures) {
+TEST(Published, ReproduceWritesTheColumnsOfTheContractAndItsPage) {
   const Workplace place;
-  const std::string csv = place.hwsim("reproduce wire_aa --format csv --out pictures").out;
+  const std::string csv = place.hwsim("reproduce wire_aa --format csv --report page.html").out;
   const std::string header = csv.substr(0, csv.find("\r\n"));
   for (const char* column :
        {"document", "table", "value", "predicted", "lo", "hi", "held_out_predicted", "excluded_because"})
     EXPECT_NE(header.find(column), std::string::npos) << column;
-  for (const char* file : {"wire_aa_scatter.svg", "wire_aa_residuals.svg", "wire_aa.csv"})
-    EXPECT_TRUE(std::filesystem::exists(place / "pictures" / file)) << file;
-  EXPECT_EQ(place.read("pictures/wire_aa_scatter.svg").rfind("<svg", 0), 0u);
+  const std::string page = place.read("page.html");
+  for (const char* words : {"<!doctype html>", "The paper's tables", "Can I believe it", "other renderers"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  EXPECT_EQ(place.hwsim("reproduce wire_aa --report page.html").status, 3)
+      << "a page is not replaced unasked";
 }
 
 TEST(Published, MappingMistakesAreReportedWithTheirLine) {

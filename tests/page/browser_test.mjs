@@ -3,13 +3,12 @@ import assert from "node:assert/strict";
 import { statSync } from "node:fs";
 import test, { after, before } from "node:test";
 
-import puppeteer from "../../page/node_modules/puppeteer-core/lib/esm/puppeteer/puppeteer-core.js";
+import { Browser } from "./browser.mjs";
 import { answer, makePage, scene } from "./program.mjs";
 
 const PANELS = ["hardware", "pareto", "pictures", "units", "bytes", "roofline", "tornado", "memory", "flow", "belief"];
 
 let browser, page, file;
-const heard = [];
 
 async function open(address) {
   await page.goto("about:blank");
@@ -32,13 +31,8 @@ const frameMs = () => page.$eval("#frame-ms", (node) => Number(node.dataset.v));
 
 before(async () => {
   file = makePage("browser");
-  browser = await puppeteer.launch({ executablePath: process.env.HWSIM_CHROMIUM, args: ["--no-sandbox", "--disable-gpu"] });
-  page = await browser.newPage();
-  await page.setViewport({ width: 1200, height: 900 });
-  page.on("console", (message) => heard.push(`console: ${message.text()}`));
-  page.on("pageerror", (error) => heard.push(`error: ${error.message}`));
-  page.on("request", (request) => /^(data|blob|about):/.test(request.url()) || request.url() === `file://${file}` || request.url().startsWith(`file://${file}#`) || heard.push(`request: ${request.url().slice(0, 200)}`));
-  await open(`file://${file}`);
+  browser = await Browser.launch();
+  page = await browser.open(file);
 });
 
 after(async () => {
@@ -52,6 +46,7 @@ test("every panel is drawn", async () => {
     const seen = await page.$eval(`#${name}`, (node) => ({ live: node.classList.contains("live"), size: Math.max(0, ...[...node.querySelectorAll("svg, img")].map((part) => part.getBoundingClientRect().height)), failed: Boolean(node.querySelector(".missing")) }));
     assert.ok(seen.live && seen.size > 20 && !seen.failed, `${name}: ${JSON.stringify(seen)}`);
   }
+  assert.equal(await page.$$eval("#belief svg[viewBox]", (all) => all.filter((node) => node.getBoundingClientRect().height > 300).length), 3, "times, ratios, other renderers");
   assert.equal(await page.$$eval("table", (all) => all.filter((node) => !node.querySelector("button.csv")).length), 0);
 });
 
@@ -68,6 +63,17 @@ test("what a slider moves is what the program says", async () => {
   assert.equal(await frameMs(), frame.time_ms.after);
   const shown = await page.$$eval("#mount-hardware table tbody tr", (rows) => rows.map((row) => [row.cells[0].textContent, Number(row.cells[2].dataset.v), row.cells[4].textContent]));
   assert.deepEqual(shown, passes.map((pass) => [pass.name, pass.time_ms.after, pass.limiter.after]));
+});
+
+test("a GPU without a last-level cache is given one", async () => {
+  await page.click("#reset");
+  await settled();
+  await moveSlider("llc_size_kib", 4);
+  assert.equal(await page.evaluate(() => window.hwsimReport.state.sets.llc_size_kib), 8192);
+  const technique = await page.evaluate(() => window.hwsimReport.model.data.points[0].explanation.technique);
+  const [{ frame }] = answer("compare", ...scene, "-t", technique, "-g", "gtx980", "--set", "gpu.llc_size_kib=8192").results;
+  assert.equal(await frameMs(), frame.time_ms.after);
+  await moveSlider("dram_bandwidth_gb_s", 4);
 });
 
 test("the address keeps what is moved", async () => {
@@ -104,13 +110,11 @@ test("pictures are compared, blink and zoom", async () => {
 });
 
 test("without scripts the answer, the tables and the pictures are there", async () => {
-  const plain = await browser.newPage();
-  await plain.setJavaScriptEnabled(false);
-  await plain.goto(`file://${file}`);
+  const plain = await browser.open(file, { scripts: false });
   const seen = await plain.evaluate(() => document.body.innerText).catch(() => null);
   const html = seen ?? (await plain.content());
   for (const word of ["Before you lean on it", "deferred_simple_complex on gtx980", "Can I believe it"]) assert.ok(html.includes(word), word);
   await plain.close();
 });
 
-test("nothing was said in the console, no request was sent", () => assert.deepEqual(heard, []));
+test("nothing was said in the console, no request was sent", () => assert.deepEqual(browser.heard, []));

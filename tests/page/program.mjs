@@ -3,8 +3,8 @@ import { execFileSync } from "node:child_process";
 import { mkdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 
-const place = process.env.HWSIM_TEST_PLACE;
-const program = process.env.HWSIM;
+export const place = process.env.HWSIM_TEST_PLACE;
+export const program = process.env.HWSIM;
 if (!place || !program) throw new Error("HWSIM and HWSIM_TEST_PLACE say what to test: run it by ctest");
 
 export const scene = ["sponza_hall", "--resolution", "320x180"];
@@ -14,8 +14,11 @@ export function inPlace(name) {
   return join(place, name);
 }
 
-export function hwsim(...words) {
-  const env = { ...process.env, HWSIM_CACHE: inPlace("cache") };
+export const hwsim = (...words) => hwsimIn({}, ...words);
+
+// With variables of its own.
+export function hwsimIn(variables, ...words) {
+  const env = { ...process.env, HWSIM_CACHE: inPlace("cache"), ...variables };
   return execFileSync(program, words, { env, encoding: "utf8", stdio: ["ignore", "pipe", "ignore"], maxBuffer: 1 << 28 });
 }
 

@@ -209,3 +209,22 @@ def test_a_lab_has_its_own_folders(triangle, tmp_path):
 
 def test_the_lab_says_that_it_works(lab):
     assert all(row["ok"] for row in lab.doctor())
+
+
+def test_a_report_is_one_page_that_says_what_made_it(lab, triangle, tmp_path):
+    page = lab.report(tmp_path / "page.html", triangle, ["none", "msaa4x"], what_if="dram-x2", resolution=(64, 48))
+    text = page.read_text()
+    assert page.stat().st_size < 5_000_000 and text.startswith("<!doctype html>")
+    assert "msaa4x on gtx980" in text and "dram-x2" in text and "hwsim.report(" in text
+    with pytest.raises(FileExistsError):
+        lab.report(page, triangle)
+    assert "none on gtx980" in lab.report(page, triangle, resolution=(64, 48), force=True).read_text()
+    with pytest.raises(hwsim.InputError) as caught:
+        lab.report(tmp_path / "other.html", triangle, "msaa5x")
+    assert not (tmp_path / "other.html").exists() and caught.value.codes
+
+
+def test_a_report_of_what_the_program_wrote_names_what_it_cannot_read(lab, tmp_path):
+    with pytest.raises(hwsim.InputError) as caught:
+        lab.report_of(tmp_path / "page.html", tmp_path)
+    assert caught.value.codes == ("U020",)
