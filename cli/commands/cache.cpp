@@ -9,18 +9,24 @@
 #include "lab/base/messages.h"
 #include "lab/base/table.h"
 #include "lab/results/folder_exchange.h"
+#include "lab/store/cache_entries.h"
 
 namespace hwsim::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-Table file_table(const std::vector<CachedFile>& files) {
-  Table table{
-      {{"folder", "folder"}, {"file", "file"}, {"bytes", "bytes", true}, {"age_days", "age, days", true}},
-      {}};
-  for (const CachedFile& file : files)
-    table.rows.push_back({file.folder, file.path.filename().string(), file.bytes, Real{file.age_days, 1}});
+/// Files that are gone are told by their names alone.
+Table file_table(const std::vector<CachedFile>& files, const std::vector<std::string>& titles) {
+  Table table{{{"folder", "folder"},
+               {"entry", "what it is"},
+               {"file", "file"},
+               {"bytes", "bytes", true},
+               {"age_days", "age, days", true}},
+              {}};
+  for (std::size_t i = 0; i < files.size(); ++i)
+    table.rows.push_back({files[i].folder, titles[i], files[i].path.filename().string(), files[i].bytes,
+                          Real{files[i].age_days, 1}});
   return table;
 }
 
@@ -38,13 +44,15 @@ ExitStatus cache(const CacheArguments& options, Context& context) {
     std::erase_if(files, [&](const CachedFile& file) { return file.age_days < options.older_than_days; });
   std::uint64_t bytes = 0;
   for (const CachedFile& file : files) bytes += file.bytes;
+  std::vector<std::string> titles;
+  for (const CachedFile& file : files) titles.push_back(entry_title(file, lab.cache()));
   if (options.prune && !options.dry_run)
     for (const CachedFile& file : files) {
       std::error_code error;
       fs::remove(file.path, error);
       if (error) fail("U010", "cannot remove `" + file.path.string() + "`: " + error.message());
     }
-  print({.table = file_table(files)}, options.common);
+  print({.table = file_table(files, titles)}, options.common);
   const char* verb = !options.prune ? "in" : options.dry_run ? "would be removed from" : "removed from";
   context.log.say(fmt::format("{} files, {:.1f} MiB {} {}", files.size(),
                               static_cast<double>(bytes) / kBytesPerMib, verb, lab.cache().folder()));

@@ -45,13 +45,16 @@ ExitStatus compare(const CompareArguments& options, Context& context) {
       results_given ? lab.compare_folders(options.inputs) : lab.compare(request, variations);
   const nlohmann::ordered_json json = to_json(comparison);
   const Table matrix = variation_matrix(comparison);
+  Passage heading, footing;
+  heading.add(frame_comparison(comparison)).add("\n");
+  if (!matrix.rows.empty())
+    heading.add("time of each technique against its own, 90 % interval\n").add(matrix).add("\n");
+  if (options.counters) footing.add("\n").add(counter_comparison(comparison));
   print({.table = pass_comparison(comparison, options.all),
-         .heading = to_text(frame_comparison(comparison)) + "\n" +
-                    (matrix.rows.empty() ? ""
-                                         : "time of each technique against its own, 90 % interval\n" +
-                                               to_text(matrix) + "\n"),
-         .footing = options.counters ? "\n" + to_text(counter_comparison(comparison)) : std::string(),
-         .json = &json},
+         .heading = heading,
+         .footing = footing,
+         .json = &json,
+         .one_screen = !options.all && !options.counters},
         options.common);
   write_report(lab, options.report, context, [&] {
     return results_given ? lab.report(options.inputs) : lab.report(request, variations, comparison);

@@ -6,6 +6,7 @@
 #include "cli/commands/commands.h"
 #include "cli/commands/lab_options.h"
 #include "cli/terminal/answer.h"
+#include "lab/base/text.h"
 #include "lab/results/results.h"
 
 namespace hwsim::cli {
@@ -29,9 +30,9 @@ std::string verdict(const Explanation& explanation) {
   return text + "\n";
 }
 
-std::string text_of(const Explanation& explanation) {
-  return headline(explanation.result, limiter_share_ratio(explanation)) + verdict(explanation) + "\n" +
-         to_text(explained_passes(explanation)) + "\n" + to_text(headroom_table(explanation)) + "\n";
+void add(Passage& passage, const Explanation& explanation) {
+  passage.add(headline(explanation.result, limiter_share_ratio(explanation)) + verdict(explanation) + "\n");
+  passage.add(explained_passes(explanation)).add("\n").add(headroom_table(explanation)).add("\n");
 }
 
 /// Rows of all points under one header, the point first where there are several.
@@ -48,20 +49,37 @@ Table joined(const std::vector<Explanation>& explanations, bool every) {
   return table;
 }
 
+/// The command that tries twice the strongest number of the first point's GPU; empty where it has none.
+std::string lever(const Explanation& explanation, const ExplainArguments& options) {
+  const auto strongest = std::ranges::find_if(explanation.sensitivities, [](const SensitivityResult& s) {
+    return s.elasticity < 0.0 && s.parameter.starts_with("gpu.");
+  });
+  if (strongest == explanation.sensitivities.end() || options.view.scene.empty()) return {};
+  return fmt::format("hwsim compare {} -t {} -g {} --set {}=x2", shell_word(options.view.scene),
+                     shell_word(explanation.result.technique), shell_word(explanation.result.gpu),
+                     strongest->parameter);
+}
+
 }  // namespace
 
 ExitStatus explain(const ExplainArguments& options, Context& context) {
   Lab lab(lab_options(options, context.log));
   const std::vector<Explanation> explanations = lab.explain(plan_of(options, lab));
-  std::string heading, footing;
-  for (const Explanation& explanation : explanations) heading += text_of(explanation);
+  Passage heading, footing;
+  for (const Explanation& explanation : explanations) add(heading, explanation);
   if (explanations.size() > 1) {
     const Comparison compared = lab::compare(explanations, lab.calibration());
-    footing = "\n" + to_text(frame_comparison(compared)) + "\n" + to_text(pass_comparison(compared));
+    footing.add("\n").add(frame_comparison(compared)).add("\n").add(pass_comparison(compared));
   }
   const nlohmann::ordered_json json = to_json(explanations, lab.calibration());
-  print({.table = joined(explanations, options.all), .heading = heading, .footing = footing, .json = &json},
+  print({.table = joined(explanations, options.all),
+         .heading = heading,
+         .footing = footing,
+         .json = &json,
+         .one_screen = !options.all},
         options.common);
+  if (const std::string command = lever(explanations.front(), options); !command.empty())
+    context.suggest(command);
   return ExitStatus::done;
 }
 

@@ -54,10 +54,9 @@ ExitStatus fit(const FitArguments& options, Context& context) {
   write_calibration(model, options.out);
   const Fit& fit = model.figures.fit;
   const Table not_run = not_run_table(model.experiment);
-  print({.table = parameter_table(model),
-         .heading = heading(fit, model.fit_wall_s),
-         .footing = "\n" + starts_text(fit) + correlations_text(model.experiment, fit) +
-                    (not_run.rows.empty() ? "" : "\n" + to_text(not_run))},
+  Passage footing("\n" + starts_text(fit) + correlations_text(model.experiment, fit));
+  if (!not_run.rows.empty()) footing.add("\n").add(not_run);
+  print({.table = parameter_table(model), .heading = heading(fit, model.fit_wall_s), .footing = footing},
         options.common);
   return fit.converged ? ExitStatus::done : ExitStatus::run_failed;
 }

@@ -8,6 +8,7 @@
 #include "cli/terminal/interrupt.h"
 #include "lab/base/files.h"
 #include "lab/base/json_text.h"
+#include "lab/base/text.h"
 #include "lab/results/run_record.h"
 #include "pipeline/image/image_io.h"
 
@@ -62,9 +63,11 @@ ExitStatus rank(const RankArguments& options, Context& context) {
   write_file(record.path("ranking.json"), json_text(json));
   const std::string place = record.commit(context.log.text());
   guard.keep();
-  print({.table = table, .heading = sentence(ranking), .footing = {}, .json = &json}, options.common);
+  print({.table = table, .heading = sentence(ranking), .footing = {}, .json = &json, .one_screen = true},
+        options.common);
   context.log.say("results: " + place);
   write_report(lab, options.report, context, [&] { return lab.report({place}); });
+  if (options.report.empty()) context.suggest("hwsim report " + shell_word(place));
   return may_be_within(ranking.techniques.front().verdict) ? ExitStatus::done : ExitStatus::check_not_met;
 }
 

@@ -8,6 +8,7 @@
 #include "cli/terminal/run_view.h"
 #include "lab/base/files.h"
 #include "lab/base/json_text.h"
+#include "lab/base/text.h"
 
 namespace hwsim::cli {
 namespace {
@@ -18,6 +19,13 @@ lab::Run simulate(Lab& lab, const RunPlan& plan, RunRecord& record, ShownRun& sh
 } catch (const InternalError&) {
   std::fprintf(stderr, "%s", json_text(record.manifest("failed")).c_str());
   throw;
+}
+
+void suggest_next(const RunPlan& plan, const std::string& place, bool reportable, Context& context) {
+  if (plan.images && plan.reference_samples == 0)
+    context.suggest("the same with --reference, for the error of the images");
+  else if (reportable)
+    context.suggest("hwsim report " + shell_word(place));
 }
 
 }  // namespace
@@ -42,8 +50,7 @@ ExitStatus run(const RunArguments& options, Context& context) {
   print(answer, options.common);
   context.log.say("results: " + place);
   write_report(lab, options.report, context, [&] { return lab.report({place}); });
-  if (context.terminal.error_is_terminal && plan.reference_samples == 0)
-    context.log.say("next: repeat with --reference for the error of the images");
+  suggest_next(plan, place, options.report.empty(), context);
   return ExitStatus::done;
 }
 

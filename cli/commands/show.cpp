@@ -16,19 +16,29 @@ namespace {
                                const Catalog& catalog) {
   std::vector<std::string> names = gpus;
   for (std::string& entry : catalog.entry_names()) names.push_back(std::move(entry));
-  fail("U016", "no GPU, scene, technique, counter or table is called `" + name + "`",
-       did_you_mean(name, names), "`hwsim list gpus` (scenes, techniques, counters, tables) lists them");
+  for (std::string& key : names_of(catalog.sources())) names.push_back(std::move(key));
+  fail("U016", "no GPU, scene, technique, counter, table or source is called `" + name + "`",
+       did_you_mean(name, names),
+       "`hwsim list gpus` (scenes, techniques, counters, tables, sources) lists them");
 }
 
 /// The name alone, or behind the kind that it has: `show gpu gtx980`.
 std::string name_of(const std::vector<std::string>& words) {
-  static const std::vector<std::string> kinds = {"gpu", "scene", "technique", "counter", "table"};
+  static const std::vector<std::string> kinds = {"gpu", "scene", "technique", "counter", "table", "source"};
   if (words.size() == 1) return words.front();
   if (std::ranges::find(kinds, words.front()) == kinds.end())
     fail_usage("U016", "`" + words.front() + "` is no kind of thing to show",
                did_you_mean(words.front(), kinds),
-               "gpu, scene, technique, counter or table, or the name alone");
+               "gpu, scene, technique, counter, table or source, or the name alone");
   return words.back();
+}
+
+/// The documents that the GPU's values come from.
+Passage sources_of(const GpuConfig& gpu, const Catalog& catalog) {
+  std::vector<std::string> texts;
+  for (const auto& [key, origin] : gpu.origins) texts.push_back(origin.source);
+  const Table sources = catalog.sources_in(texts);
+  return sources.rows.empty() ? Passage() : Passage("\n").add(sources);
 }
 
 }  // namespace
@@ -40,8 +50,14 @@ ExitStatus show_entry(const ShowArguments& options, Context& context) {
   const std::vector<std::string> gpus = list_gpus(folder.gpus());
   if (has_extension(name, ".toml") || std::find(gpus.begin(), gpus.end(), name) != gpus.end()) {
     const GpuConfig gpu = load_gpu_from_options(folder, name, options.overlays, options.sets);
-    print({.table = key_table(gpu, options.origin), .heading = fmt::format("{}: {}\n\n", gpu.id, gpu.title)},
+    print({.table = key_table(gpu, options.origin),
+           .heading = fmt::format("{}: {}\n\n", gpu.id, gpu.title),
+           .footing = options.origin ? sources_of(gpu, lab.catalog()) : Passage()},
           options.common);
+    return ExitStatus::done;
+  }
+  if (const Table source = lab.catalog().sources_in({"[" + name + "]"}); !source.rows.empty()) {
+    print({.table = source}, options.common);
     return ExitStatus::done;
   }
   const std::optional<CatalogEntry> entry = lab.catalog().entry(name);

@@ -38,8 +38,11 @@ ExitStatus validate_external(const ValidateArguments& options, Lab& lab) {
   const lab::ExternalValidation validation = lab.validate_external(options.scenes);
   const nlohmann::ordered_json json = to_json(validation);
   print({.table = external_errors_table(validation),
-         .footing = "\n" + to_text(external_ratios_table(validation)) + "\n" +
-                    to_text(external_rows_table(validation)) + not_run_text(validation),
+         .footing = Passage("\n")
+                        .add(external_ratios_table(validation))
+                        .add("\n")
+                        .add(external_rows_table(validation))
+                        .add(not_run_text(validation)),
          .json = &json},
         options.common);
   return ExitStatus::done;
@@ -60,12 +63,11 @@ ExitStatus validate(const ValidateArguments& options, Context& context) {
   const lab::Validation validation = lab.validate(options.papers);
   const nlohmann::ordered_json json = to_json(validation);
   const Table not_run = not_run_table(validation.model->experiment);
-  print({.table = split_table(validation),
-         .footing = "\n" + to_text(ratio_table(validation)) + "\n" + to_text(label_table(validation)) + "\n" +
-                    to_text(worst_table(*validation.model, kWorstCells)) + "\n" + counts_text(validation) +
-                    (not_run.rows.empty() ? "" : "\n" + to_text(not_run)),
-         .json = &json},
-        options.common);
+  Passage footing;
+  footing.add("\n").add(ratio_table(validation)).add("\n").add(label_table(validation)).add("\n");
+  footing.add(worst_table(*validation.model, kWorstCells)).add("\n" + counts_text(validation));
+  if (!not_run.rows.empty()) footing.add("\n").add(not_run);
+  print({.table = split_table(validation), .footing = footing, .json = &json}, options.common);
   const std::vector<std::string> broken =
       cost_models::broken_statements(statements, validation.model->figures, options.papers);
   for (const std::string& sentence : broken) context.log.say("accuracy: " + sentence);

@@ -11,14 +11,19 @@ namespace {
 struct Values {
   std::string words;    ///< "auto always never"
   std::string catalog;  ///< "gpus": `hwsim list gpus`
+  bool list = false;    ///< several, with commas between
 };
 
 Values values_of_flag(const std::string& flag) {
-  static const std::map<std::string, Values> values = {{"--gpu", {"", "gpus"}},
-                                                       {"--technique", {"", "techniques"}},
+  static const std::map<std::string, Values> values = {{"--gpu", {"", "gpus", true}},
+                                                       {"--technique", {"", "techniques", true}},
                                                        {"--engine", {"roofline queue detailed", ""}},
                                                        {"--overlay", {"", "overlays"}},
-                                                       {"--what-if", {"", "overlays"}},
+                                                       {"--what-if", {"", "overlays", true}},
+                                                       {"--set", {"", "settings"}},
+                                                       {"--vary", {"", "settings"}},
+                                                       {"--like", {"", "gpus"}},
+                                                       {"--paper", {"", "papers"}},
                                                        {"--format", {"table csv json md", ""}},
                                                        {"--color", {"auto always never", ""}},
                                                        {"--progress", {"auto always never", ""}}};
@@ -35,7 +40,9 @@ Values values_of_command(const std::string& command) {
       {"rank", {"", "scenes"}},
       {"reference", {"", "scenes"}},
       {"scene check", {"", "scenes"}},
-      {"list", {"gpus scenes techniques counters overlays tables", ""}},
+      {"list", {"gpus scenes techniques counters overlays tables papers sources settings codes", ""}},
+      {"reproduce", {"", "papers"}},
+      {"help", {"", "codes"}},
       {"show", {"", "gpus"}},
       {"config check", {"", "gpus"}},
       {"config show", {"", "gpus"}},
@@ -77,20 +84,37 @@ std::string shell_words(const Values& values) {
   return values.catalog.empty() ? values.words : "$(" + catalog_command(values.catalog) + ")";
 }
 
+/// Flags with the values that scripts know, and their short names in a pattern of a shell.
+constexpr std::pair<const char*, const char*> kFlagsWithValues[] = {
+    {"--gpu", "|-g"}, {"--technique", "|-t"}, {"--engine", ""},  {"--format", ""},
+    {"--color", ""},  {"--progress", ""},     {"--overlay", ""}, {"--what-if", ""},
+    {"--set", ""},    {"--vary", ""},         {"--like", ""},    {"--paper", ""}};
+
+/// What completes the word `current`: one of the words; the last of a list with commas; a path before `=`.
+constexpr std::string_view kBashHelpers = R"(_hwsim_words() { COMPREPLY=($(compgen -W "$1" -- "$current")); }
+_hwsim_list() {
+  local before=""
+  case "$current" in *,*) before="${current%,*},";; esac
+  COMPREPLY=($(compgen -P "$before" -W "$1" -- "${current##*,}"))
+}
+_hwsim_setting() { COMPREPLY=($(compgen -S = -W "$1" -- "$current")); compopt -o nospace 2>/dev/null; }
+)";
+
 std::string bash_script(const std::vector<CommandInfo>& commands) {
-  std::string script =
+  std::string script(kBashHelpers);
+  script +=
       "_hwsim() {\n  local current=\"${COMP_WORDS[COMP_CWORD]}\" previous=\"${COMP_WORDS[COMP_CWORD-1]}\"\n"
       "  local command=\"${COMP_WORDS[1]}\" words=\"\"\n"
-      "  case \"$command\" in scene|config|cache) [ \"$COMP_CWORD\" -gt 2 ] && command=\"$command "
+      "  case \"$command\" in scene|config|cache|gpu) [ \"$COMP_CWORD\" -gt 2 ] && command=\"$command "
       "${COMP_WORDS[2]}\";; esac\n"
       "  case \"$previous\" in\n";
-  for (const char* flag :
-       {"--gpu", "--technique", "--engine", "--format", "--color", "--progress", "--overlay", "--what-if"}) {
-    const std::string short_name = flag == std::string("--gpu")         ? "|-g"
-                                   : flag == std::string("--technique") ? "|-t"
-                                                                        : "";
-    script += fmt::format("    {}{}) COMPREPLY=($(compgen -W \"{}\" -- \"$current\")); return;;\n", flag,
-                          short_name, shell_words(values_of_flag(flag)));
+  for (const auto& [flag, short_name] : kFlagsWithValues) {
+    const Values values = values_of_flag(flag);
+    script += fmt::format("    {}{}) {} \"{}\"; return;;\n", flag, short_name,
+                          values.list                    ? "_hwsim_list"
+                          : values.catalog == "settings" ? "_hwsim_setting"
+                                                         : "_hwsim_words",
+                          shell_words(values));
   }
   script += "    --out|--db|--merge) COMPREPLY=($(compgen -f -- \"$current\")); return;;\n  esac\n";
   script += fmt::format("  if [ \"$COMP_CWORD\" -eq 1 ]; then words=\"{}\"; else\n  case \"$command\" in\n",
@@ -121,6 +145,13 @@ std::string fish_quoted(const std::string& text) {
   return "'" + quoted + "'";
 }
 
+/// Words, or a command in parentheses that fish runs; lists with commas by fish's own function.
+std::string fish_words(const Values& values) {
+  if (values.catalog.empty()) return values.words;
+  const std::string command = shell_words(values).substr(1);
+  return values.list ? "(__fish_append , " + command + ")" : command;
+}
+
 std::string fish_flag(const std::string& condition, const FlagInfo& flag) {
   std::string line = "complete -c hwsim -n " + fish_quoted(condition);
   std::string long_name;
@@ -129,9 +160,7 @@ std::string fish_flag(const std::string& condition, const FlagInfo& flag) {
     if (name.starts_with("--")) long_name = name;
   }
   if (flag.takes_value) line += " -r";
-  const std::string words = values_of_flag(long_name).catalog.empty()
-                                ? values_of_flag(long_name).words
-                                : shell_words(values_of_flag(long_name)).substr(1);
+  const std::string words = fish_words(values_of_flag(long_name));
   if (!words.empty()) line += " -f -a " + fish_quoted(words);
   return line + " -d " + fish_quoted(flag.description) + "\n";
 }
@@ -148,8 +177,7 @@ std::string fish_script(const std::vector<CommandInfo>& commands) {
                           fish_quoted(command.description));
     std::string inside = "__fish_seen_subcommand_from " + parent;
     if (space != std::string::npos) inside += "; and __fish_seen_subcommand_from " + last;
-    const Values values = values_of_command(command.name);
-    const std::string words = values.catalog.empty() ? values.words : shell_words(values).substr(1);
+    const std::string words = fish_words(values_of_command(command.name));
     if (!words.empty())
       script += fmt::format("complete -c hwsim -n {} -a {}\n", fish_quoted(inside), fish_quoted(words));
     for (const FlagInfo& flag : command.flags) script += fish_flag(inside, flag);

@@ -37,15 +37,18 @@ void ShownRun::point(const PointResult& point, const RunContext& run) {
       headline(make_result(point, run.plan, run.scene.name), limiter_share_ratio(point));
   log_.detail(sentences);
   for (const Diagnostic& warning : result_warnings(point)) log_.report(warning);
-  last_ = {
-      .table = pass_table(point), .heading = sentences + "\n", .footing = "\n" + to_text(unit_table(point))};
+  last_ = {.table = pass_table(point),
+           .heading = sentences + "\n",
+           .footing = Passage("\n").add(unit_table(point)),
+           .one_screen = true};
 }
 
 Answer ShownRun::answer(const lab::Run& run) const {
   if (run.results.size() == 1) return last_;
-  return {.table = summary_table(run.results),
-          .heading =
-              fmt::format("{} at {}x{}\n\n", run.scene, run.resolution.width_px, run.resolution.height_px)};
+  return {
+      .table = summary_table(run.results),
+      .heading = fmt::format("{} at {}x{}\n\n", run.scene, run.resolution.width_px, run.resolution.height_px),
+      .one_screen = true};
 }
 
 }  // namespace hwsim::cli

@@ -1,5 +1,6 @@
 #include "cli/terminal/terminal.h"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -41,6 +42,12 @@ Terminal inspect_terminal(const CommonArguments& options) {
   const bool plain = set_and_not_empty("NO_COLOR") || is_dumb();
   terminal.output_color = decide(options.color, terminal.output_is_terminal && !plain);
   terminal.error_color = decide(options.color, terminal.error_is_terminal && !plain);
+  if (terminal.output_is_terminal) {
+    winsize size{};
+    const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0;
+    terminal.columns = known ? size.ws_col : 80;
+    terminal.lines = known ? size.ws_row : 24;
+  }
   terminal.bar = decide(options.progress, terminal.error_is_terminal && !is_dumb());
   return terminal;
 }
@@ -73,6 +80,10 @@ void Log::progress(double done_ratio, const std::string& what) {
 void Log::progress_ended() {
   if (bar_) bar_->finish();
   bar_.reset();
+}
+
+void Context::suggest(const std::string& command) {
+  if (terminal.error_is_terminal) log.say("next: " + command);
 }
 
 }  // namespace hwsim::cli

@@ -15,7 +15,9 @@ struct Terminal {
   bool error_is_terminal = false;
   bool output_color = false;
   bool error_color = false;
-  bool bar = false;  ///< a progress bar is drawn in place
+  bool bar = false;         ///< a progress bar is drawn in place
+  std::size_t columns = 0;  ///< width of standard output; 0: it is no terminal
+  std::size_t lines = 0;
 };
 
 /// NO_COLOR (set, not empty) and TERM=dumb win over `auto`, a flag wins over them.
@@ -46,6 +48,9 @@ struct Context {
   std::vector<std::string> arguments;  ///< argv, for the manifest
   Terminal terminal;
   Log log;
+
+  /// The command that most ask for next: a last line for who sits before a terminal.
+  void suggest(const std::string& command);
 };
 
 }  // namespace hwsim::cli

@@ -14,13 +14,6 @@
 namespace hwsim::lab {
 namespace {
 
-std::string text_of(const TableCell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell)) return printable_line(*text);
-  if (const auto* count = std::get_if<std::uint64_t>(&cell)) return std::to_string(*count);
-  if (const auto* real = std::get_if<Real>(&cell)) return fmt::format("{:.{}f}", real->value, real->decimals);
-  return "n/a";
-}
-
 bool is_number(const std::string& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -45,71 +38,11 @@ std::string csv_of(const TableCell& cell) {
   return quoted + "\"";
 }
 
-/// Bytes that start a character in UTF-8, which is the width of all that hwsim prints.
-size_t display_columns(std::string_view text) {
-  return static_cast<size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
-}
-
-std::string padded(const std::string& text, size_t columns, bool right) {
-  const std::string space(columns - std::min(columns, display_columns(text)), ' ');
-  return right ? space + text : text + space;
-}
-
-/// Breaks at spaces; a longer word stays whole.
-std::vector<std::string> wrap(const std::string& text, size_t columns) {
-  if (columns == 0 || text.size() <= columns) return {text};
-  std::vector<std::string> lines;
-  size_t start = 0;
-  while (text.size() - start > columns) {
-    size_t space = text.rfind(' ', start + columns);
-    if (space == std::string::npos || space <= start) space = text.find(' ', start + columns);
-    if (space == std::string::npos) break;
-    lines.push_back(text.substr(start, space - start));
-    start = space + 1;
-  }
-  lines.push_back(text.substr(start));
-  return lines;
-}
-
 TableCell cell_from_json(const nlohmann::ordered_json& value) {
   if (value.is_null()) return NotApplicable{};
   if (value.is_number_unsigned()) return value.get<std::uint64_t>();
   if (value.is_number()) return Real{value.get<double>()};
   return value.get<std::string>();
-}
-
-void append_row(std::string& out, const std::vector<Column>& columns,
-                const std::vector<std::vector<std::string>>& cells, const std::vector<size_t>& widths) {
-  size_t height = 1;
-  for (const auto& cell : cells) height = std::max(height, cell.size());
-  for (size_t line = 0; line < height; ++line) {
-    std::string row;
-    for (size_t i = 0; i < cells.size(); ++i)
-      row += padded(line < cells[i].size() ? cells[i][line] : "", widths[i], columns[i].right) + "  ";
-    row.erase(row.find_last_not_of(' ') + 1);
-    out += row + "\n";
-  }
-}
-
-/// The lines of each cell.
-std::vector<std::vector<std::string>> wrapped(const std::vector<TableCell>& row,
-                                              const std::vector<Column>& columns) {
-  std::vector<std::vector<std::string>> cells;
-  for (size_t i = 0; i < row.size(); ++i) cells.push_back(wrap(text_of(row[i]), columns[i].wrap_columns));
-  return cells;
-}
-
-std::vector<size_t> widths_of(const RowSource& rows) {
-  std::vector<size_t> widths;
-  for (const Column& column : rows.columns) widths.push_back(display_columns(printable_line(column.title)));
-  if (!rows.each) return widths;
-  rows.each([&](const std::vector<TableCell>& row) {
-    const auto cells = wrapped(row, rows.columns);
-    for (size_t i = 0; i < cells.size(); ++i)
-      for (const std::string& line : cells[i]) widths[i] = std::max(widths[i], display_columns(line));
-  });
-  return widths;
 }
 
 std::string escaped_for_markdown(std::string text) {
@@ -137,6 +70,13 @@ std::string written(Write write, const Table& table) {
 
 }  // namespace
 
+std::string text_of(const TableCell& cell) {
+  if (const auto* text = std::get_if<std::string>(&cell)) return printable_line(*text);
+  if (const auto* count = std::get_if<std::uint64_t>(&cell)) return std::to_string(*count);
+  if (const auto* real = std::get_if<Real>(&cell)) return fmt::format("{:.{}f}", real->value, real->decimals);
+  return "n/a";
+}
+
 std::string exact(double value) { return fmt::format("{}", value); }
 
 RowSource rows_of(const Table& table) {
@@ -156,23 +96,6 @@ Table collected(const RowSource& rows) {
   Table table{rows.columns, {}};
   if (rows.each) rows.each([&](const std::vector<TableCell>& row) { table.rows.push_back(row); });
   return table;
-}
-
-void write_text(const RowSource& rows, const TakeText& take) {
-  const std::vector<size_t> widths = widths_of(rows);
-  std::vector<std::vector<std::string>> titles, rules;
-  for (size_t i = 0; i < widths.size(); ++i) {
-    titles.push_back({printable_line(rows.columns[i].title)});  // a sweep's file names some of its columns
-    rules.push_back({std::string(widths[i], '-')});
-  }
-  const auto line = [&](const std::vector<std::vector<std::string>>& cells) {
-    std::string out;
-    append_row(out, rows.columns, cells, widths);
-    take(out);
-  };
-  line(titles);
-  line(rules);
-  if (rows.each) rows.each([&](const std::vector<TableCell>& row) { line(wrapped(row, rows.columns)); });
 }
 
 void write_csv(const RowSource& rows, const TakeText& take) {
@@ -215,7 +138,12 @@ void write_json(const RowSource& rows, const TakeText& take) {
   take(first ? "[]\n" : "\n]\n");
 }
 
-std::string to_text(const Table& table) { return written(write_text, table); }
+std::string to_text(const Table& table, const TextLayout& layout) {
+  std::string out;
+  write_text(
+      rows_of(table), [&out](std::string_view text) { out += text; }, layout);
+  return out;
+}
 std::string to_csv(const Table& table) { return written(write_csv, table); }
 std::string to_markdown(const Table& table) { return written(write_markdown, table); }
 

@@ -23,6 +23,7 @@ struct Column {
   std::string title;  ///< text and Markdown
   bool right = false;
   std::size_t wrap_columns = 0;  ///< 0: as wide as its longest cell
+  bool detail = false;           ///< left out where people read a first answer
 };
 
 struct Table {
@@ -41,14 +42,28 @@ RowSource rows_of(const Table& table);  ///< valid as long as the table
 RowSource rows_of(Table&& table);       ///< keeps the table
 Table collected(const RowSource& rows);
 
+/// A cell as people read it; names from files are made safe for terminals.
+std::string text_of(const TableCell& cell);
+
+/// How a table stands on a screen.
+struct TextLayout {
+  std::size_t columns = 0;  ///< width of the screen; 0: as wide as the cells are
+  std::size_t rows = 0;     ///< most rows; 0: all
+  bool details = true;      ///< columns of details, and those without a value, too
+  /// What is written in place of a cell's text, such as the text in a color; none: the text.
+  std::function<std::string(const Column&, const std::string&)> paint{};
+};
+
 /// Takes the text piece by piece. Names from files are made safe for terminals.
 using TakeText = std::function<void(std::string_view)>;
-void write_text(const RowSource& rows, const TakeText& take);  ///< asks for the rows twice
+/// Asks for the rows twice, and once more for each block: what is wider than the screen is wrapped, then
+/// stands in blocks below each other, each with the first column.
+void write_text(const RowSource& rows, const TakeText& take, const TextLayout& layout = {});
 void write_csv(const RowSource& rows, const TakeText& take);
 void write_markdown(const RowSource& rows, const TakeText& take);
 void write_json(const RowSource& rows, const TakeText& take);  ///< as to_json(), indented by two
 
-std::string to_text(const Table& table);
+std::string to_text(const Table& table, const TextLayout& layout = {});
 /// RFC 4180: one header line, CRLF. A text that a spreadsheet would run begins with an apostrophe.
 std::string to_csv(const Table& table);
 std::string to_markdown(const Table& table);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "algos/techniques.h"
 #include "hwsim/base/csv.h"
@@ -112,6 +113,54 @@ Table Catalog::published_tables() const {
   std::sort(table.rows.begin(), table.rows.end(), [](const auto& a, const auto& b) {
     return std::get<std::string>(a[0]) < std::get<std::string>(b[0]);
   });
+  return table;
+}
+
+Table Catalog::papers() const {
+  std::map<std::string, std::pair<std::uint64_t, std::string>> papers;
+  for (const std::string& name : names_of(published_tables())) {
+    const Table content = read_table(folder_.published() + "/" + name + ".csv");
+    if (content.rows.empty()) continue;
+    auto& [rows, tables] = papers[std::get<std::string>(content.rows.front().front())];
+    rows += content.rows.size();
+    tables += (tables.empty() ? "" : ", ") + name;
+  }
+  Table table{{{"name", "name"}, {"rows", "rows", true}, {"tables", "tables", false, kTextColumns}}, {}};
+  for (const auto& [name, held] : papers) table.rows.push_back({name, held.first, held.second});
+  return table;
+}
+
+Table Catalog::sources() const {
+  Table table{
+      {{"key", "key"}, {"document", "document", false, kTextColumns}, {"taken", "what was taken", false, 40}},
+      {}};
+  const fs::path place = fs::path(folder_.path()) / "sources.csv";
+  std::error_code error;
+  if (!fs::exists(place, error)) return table;  // a folder of one's own need not have it
+  const CsvFile file = read_csv(place.string());
+  const std::size_t key = file.column("key"), document = file.column("document"),
+                    taken = file.column("taken");
+  for (const std::vector<std::string>& row : file.rows)
+    table.rows.push_back({row[key], row[document], row[taken]});
+  return table;
+}
+
+Table Catalog::sources_in(const std::vector<std::string>& texts) const {
+  Table table = sources();
+  std::erase_if(table.rows, [&](const std::vector<TableCell>& row) {
+    const std::string key = std::get<std::string>(row.front());
+    return std::ranges::none_of(texts, [&](const std::string& text) {
+      return text.find("[" + key + "]") != std::string::npos ||
+             text.find("[" + key + ",") != std::string::npos;
+    });
+  });
+  return table;
+}
+
+Table Catalog::codes() const {
+  Table table{{{"code", "code"}, {"title", "message"}}, {}};
+  for (const ErrorCode& code : error_codes())
+    table.rows.push_back({std::string(code.code), std::string(code.title)});
   return table;
 }
 

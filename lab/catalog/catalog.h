@@ -29,6 +29,12 @@ class Catalog {
   Table counters() const;
   Table overlays() const;
   Table published_tables() const;
+  Table papers() const;   ///< those that `reproduce` takes
+  Table codes() const;    ///< those of messages
+  Table sources() const;  ///< documents that values of GPU files name by a key, "[B3D-F]"
+
+  /// Those that the texts name.
+  Table sources_in(const std::vector<std::string>& texts) const;
 
   std::vector<ErrorCode> error_codes() const { return lab::error_codes(); }
 

@@ -96,17 +96,17 @@ std::string headline(const Result& result, double limiter_share_ratio) {
 
 Table pass_table(const PointResult& point) {
   Table table{{{"pass", "pass"},
-               {"kind", "kind"},
+               {"kind", "kind", false, 0, true},
                {"time_ms", "ms", true},
                {"share_pct", "% of frame", true},
                {"limiter", "limiter"},
                {"runner_up", "next"},
                {"fragments", "fragments", true},
                {"shaded", "shaded", true},
-               {"depth_mb", "depth MB", true},
-               {"color_mb", "color MB", true},
-               {"texture_mb", "texture MB", true},
-               {"other_mb", "other MB", true}},
+               {"depth_mb", "depth MB", true, 0, true},
+               {"color_mb", "color MB", true, 0, true},
+               {"texture_mb", "texture MB", true, 0, true},
+               {"other_mb", "other MB", true, 0, true}},
               {}};
   for (size_t i = 0; i < point.timing.passes.size(); ++i) {
     const PassTiming& pass = point.timing.passes[i];
@@ -192,11 +192,11 @@ Table summary_table(const std::vector<Result>& results) {
                {"hi_ms", "hi", true},
                {"support", "support"},
                {"limiter", "limiter of the slowest pass"},
-               {"dram_mb", "DRAM MB", true},
-               {"memory_mib", "memory MiB", true},
-               {"shaded_samples", "shaded samples", true},
+               {"dram_mb", "DRAM MB", true, 0, true},
+               {"memory_mib", "memory MiB", true, 0, true},
+               {"shaded_samples", "shaded samples", true, 0, true},
                {"flip_mean", "FLIP", true},
-               {"psnr_db", "PSNR dB", true}},
+               {"psnr_db", "PSNR dB", true, 0, true}},
               {}};
   for (const Result& result : results) {
     const FrameResult& frame = result.frame;

@@ -50,6 +50,18 @@ pipeline::Image trace_rays(SceneView& scene, int samples, int jobs, const Progre
 
 }  // namespace
 
+std::optional<std::string> reference_title(const std::string& path, const Cache& cache) try {
+  Observer silence;
+  const auto bytes = cache.read(path, reference_kind(), silence);
+  if (!bytes) return std::nullopt;
+  ByteReader in(*bytes);
+  const std::string key = in.text();
+  const pipeline::Image image = decode_image(in);
+  return fmt::format("{}x{}, {} samples a pixel", image.width, image.height, key.substr(key.rfind('|') + 1));
+} catch (const DamagedBytes&) {
+  return std::nullopt;
+}
+
 ReferenceImage make_reference(SceneView& scene, int samples, const ReferenceContext& context) {
   const auto start = std::chrono::steady_clock::now();
   const std::string key = reference_key(scene, samples);

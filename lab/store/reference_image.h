@@ -20,6 +20,9 @@ struct ReferenceContext {
   const ProgressFunction& progress;
 };
 
+/// What a reference in the cache is: "320x180, 64 samples a pixel"; none where this version cannot read it.
+std::optional<std::string> reference_title(const std::string& path, const Cache& cache);
+
 /// Takes the view's reference from the cache, or traces its rays and keeps it there.
 ReferenceImage make_reference(SceneView& scene, int samples, const ReferenceContext& context);
 

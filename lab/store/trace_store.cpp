@@ -71,6 +71,18 @@ pipeline::SealKind image_kind() { return {"image", algos::source_digest()}; }
 
 }  // namespace
 
+std::optional<std::string> frame_title(const std::string& path, const Cache& cache) try {
+  Observer silence;
+  const auto bytes = cache.read(path, frame_kind(), silence);
+  if (!bytes) return std::nullopt;
+  Emulation emulation;
+  decode_frame(*bytes, ByteReader(*bytes).text(), emulation);
+  const WorkTrace& trace = emulation.trace;
+  return fmt::format("{} of {}, {}x{}", trace.technique, trace.scene, trace.width_px, trace.height_px);
+} catch (const DamagedBytes&) {
+  return std::nullopt;
+}
+
 std::string TraceStore::frame_path(const std::string& key) const {
   return cache_.path(CacheFolder::traces, key, ".trace");
 }

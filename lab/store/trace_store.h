@@ -24,6 +24,9 @@ struct EmulatedFrame {
   bool in_memory = false;   ///< this process has had it before
 };
 
+/// What a trace in the cache is of: "msaa4x of sponza_hall, 320x180"; none where this version cannot read it.
+std::optional<std::string> frame_title(const std::string& path, const Cache& cache);
+
 class TraceStore {
  public:
   struct Options {

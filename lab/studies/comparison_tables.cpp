@@ -72,17 +72,17 @@ std::string slowest_limiter(const Difference& difference) {
 
 Table frame_comparison(const Comparison& comparison) {
   Table table{{{"result", "result"},
-               {"technique", "technique"},
-               {"gpu", "GPU"},
+               {"technique", "technique", false, 0, true},
+               {"gpu", "GPU", false, 0, true},
                {"time_ms", "ms", true},
                {"time_change_pct", "change %", true},
                {"time_change_interval90", "90 % interval", true},
                {"base", "against"},
-               {"limiter", "limiter of the slowest pass"},
-               {"dram_mb", "DRAM MB", true},
-               {"dram_change_pct", "change %", true},
-               {"memory_mib", "memory MiB", true},
-               {"shaded_samples", "shaded samples", true}},
+               {"limiter", "limiter of the slowest pass", false, 0, true},
+               {"dram_mb", "DRAM MB", true, 0, true},
+               {"dram_change_pct", "change %", true, 0, true},
+               {"memory_mib", "memory MiB", true, 0, true},
+               {"shaded_samples", "shaded samples", true, 0, true}},
               {}};
   const Result& base = comparison.baseline;
   table.rows.push_back({comparison.baseline_label, base.technique, base.gpu, Real{base.frame.time_ms, 4},
@@ -130,9 +130,9 @@ Table pass_comparison(const Comparison& comparison, bool all) {
                {"time_change_pct", "change %", true},
                {"limiter_before", "limiter before"},
                {"limiter_after", "after"},
-               {"dram_before_mb", "DRAM before MB", true},
-               {"dram_after_mb", "after MB", true},
-               {"dram_change_pct", "change %", true}},
+               {"dram_before_mb", "DRAM before MB", true, 0, true},
+               {"dram_after_mb", "after MB", true, 0, true},
+               {"dram_change_pct", "change %", true, 0, true}},
               {}};
   for (const Difference& difference : comparison.differences)
     for (const PassDifference& pass : difference.passes)

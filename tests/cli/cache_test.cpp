@@ -155,6 +155,10 @@ TEST_F(CacheTest, PruneKeepsAsMuchAsAskedFor) {
   run("");
   const Outcome kept = place.hwsim("cache prune --keep-mib 100 --json", kOwnCache);
   EXPECT_EQ(json::parse(kept.out).size(), 0u);
+  for (const json& entry : json::parse(place.hwsim("cache list --json", kOwnCache).out)) {
+    if (entry["folder"] != "traces") continue;
+    EXPECT_NE(entry["entry"].get<std::string>().find(" of triangle, 64x48"), std::string::npos) << entry;
+  }
   place.hwsim("cache prune --keep-mib 0", kOwnCache);
   EXPECT_EQ(json::parse(place.hwsim("cache list --json", kOwnCache).out).size(), 0u);
   EXPECT_FALSE(cached(""));

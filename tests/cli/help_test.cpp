@@ -119,6 +119,25 @@ TEST(CompletionTest, BashCompletesCommandsFlagsAndValues) {
   EXPECT_NE(complete("hwsim run --tech", 2).find("--technique"), std::string::npos);
   EXPECT_NE(complete("hwsim run --gpu gtx98", 3).find("gtx980"), std::string::npos);
   EXPECT_NE(complete("hwsim config ch", 2).find("check"), std::string::npos);
+  EXPECT_NE(complete("hwsim reproduce SB", 2).find("SBAA"), std::string::npos);
+  EXPECT_NE(complete("hwsim help C01", 2).find("C012"), std::string::npos);
+}
+
+TEST(CompletionTest, BashCompletesListsAndSettings) {
+  const Workplace place;
+  place.write("complete.bash", place.hwsim("completion bash").out);
+  const auto complete = [&](const std::string& words, int index) {
+    return place
+        .shell("bash -c 'source ./complete.bash; COMP_WORDS=(" + words +
+               "); COMP_CWORD=" + std::to_string(index) + "; _hwsim; echo \"${COMPREPLY[@]}\"'")
+        .out;
+  };
+  EXPECT_EQ(complete("hwsim run -g gtx980,hd58", 3), "gtx980,hd5870\n");
+  EXPECT_NE(complete("hwsim run -t none,msaa", 3).find("none,msaa4x"), std::string::npos);
+  EXPECT_NE(complete("hwsim compare --what-if dram-x2,rops", 3).find("dram-x2,rops-x2"), std::string::npos);
+  EXPECT_EQ(complete("hwsim run --set gpu.core_cl", 3), "gpu.core_clock_mhz=\n");
+  EXPECT_EQ(complete("hwsim run --set scene.shadow_m", 3), "scene.shadow_map_px=\n");
+  EXPECT_EQ(complete("hwsim sweep --vary gpu.l2_si", 3), "gpu.l2_size_kib=\n");
 }
 
 }  // namespace

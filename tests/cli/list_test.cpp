@@ -11,7 +11,8 @@ using nlohmann::json;
 
 TEST(List, EveryCatalogIsListedInEveryFormat) {
   const Workplace place;
-  for (const std::string what : {"gpus", "scenes", "techniques", "counters"}) {
+  for (const std::string what :
+       {"gpus", "scenes", "techniques", "counters", "papers", "settings", "codes", "sources"}) {
     const json rows = json::parse(place.hwsim("list " + what + " --json").out);
     EXPECT_GT(rows.size(), 3u) << what;
     const std::string csv = place.hwsim("list " + what + " --format csv").out;
@@ -138,6 +139,20 @@ TEST(Formats, FileThatCannotBeWrittenIsToldBeforeTheWork) {
     EXPECT_NE(outcome.err.find("U010"), std::string::npos) << outcome.err;
     EXPECT_EQ(place.listing(), "triangle.gltf") << file;
   }
+}
+
+// Every source key that the program prints resolves in its own output.
+TEST(Show, OriginsEndWithTheDocumentsThatTheyName) {
+  const Workplace place;
+  const std::string text = place.hwsim("show gtx980 --origin").out;
+  for (const char* document : {"[JIA]", "Dissecting the NVidia Turing T4", "[GM204-WP]", "white paper"})
+    EXPECT_NE(text.find(document), std::string::npos) << document;
+  EXPECT_EQ(place.hwsim("show gtx980").out.find("Dissecting"), std::string::npos);
+  for (const char* words : {"show source B3D-F", "show B3D-F"})
+    EXPECT_NE(place.hwsim(words).out.find("Beyond3D"), std::string::npos) << words;
+  const Outcome typing = place.hwsim("show B3D-FF");
+  EXPECT_EQ(typing.status, 3);
+  EXPECT_NE(typing.err.find("did you mean `B3D-F`?"), std::string::npos) << typing.err;
 }
 
 }  // namespace

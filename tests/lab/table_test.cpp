@@ -64,5 +64,64 @@ TEST(Table, LineEndsInACellDoNotBreakTheTable) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3) << "title, rule, one row: " << text;
 }
 
+Table wide() {
+  return {{{"name", "name"},
+           {"words", "a title of several words"},
+           {"number", "number of things", true},
+           {"empty", "empty"},
+           {"detail", "a detail", true, 0, true},
+           {"last", "the last column of all"}},
+          {{std::string("first"), std::string("words that may stand in several lines"), std::uint64_t{12},
+            NotApplicable{}, std::uint64_t{7}, std::string("end")}}};
+}
+
+std::size_t longest_line(const std::string& text) {
+  std::size_t longest = 0;
+  for (std::size_t begin = 0, end; begin < text.size(); begin = end + 1) {
+    end = text.find('\n', begin);
+    longest = std::max(longest, end - begin);
+  }
+  return longest;
+}
+
+TEST(TextLayout, TablesAreNoWiderThanTheScreen) {
+  EXPECT_GT(longest_line(to_text(wide())), 80u);
+  for (const std::size_t columns : {80u, 60u, 40u, 24u}) {
+    const std::string text = to_text(wide(), {.columns = columns});
+    EXPECT_LE(longest_line(text), columns) << text;
+    for (const char* part : {"first", "12", "7", "end", "several"})
+      EXPECT_NE(text.find(part), std::string::npos) << part << " is lost\n" << text;
+  }
+}
+
+TEST(TextLayout, BlocksRepeatTheFirstColumn) {
+  const std::string text = to_text(wide(), {.columns = 24});
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = text.find("first", at)) != std::string::npos; ++at) ++count;
+  EXPECT_GE(count, 3u) << text;
+}
+
+TEST(TextLayout, DetailsAndColumnsWithoutValuesAreLeftOut) {
+  const std::string text = to_text(wide(), {.details = false});
+  EXPECT_EQ(text.find("detail"), std::string::npos) << text;
+  EXPECT_EQ(text.find("empty"), std::string::npos) << text;
+  EXPECT_NE(text.find("number of things"), std::string::npos) << text;
+}
+
+TEST(TextLayout, RowsBeyondTheScreenAreCounted) {
+  Table table{{{"n", "n", true}}, {}};
+  for (std::uint64_t i = 0; i < 20; ++i) table.rows.push_back({i});
+  const std::string text = to_text(table, {.rows = 5});
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2 + 5 + 1) << text;
+  EXPECT_NE(text.find("... 15 more rows"), std::string::npos) << text;
+}
+
+TEST(TextLayout, APaintedCellIsAsWideAsItsText) {
+  const Table table{{{"a", "a"}, {"b", "b"}}, {{std::string("x"), std::string("y")}}};
+  const std::string text =
+      to_text(table, {.paint = [](const Column&, const std::string& t) { return "<" + t + ">"; }});
+  EXPECT_NE(text.find("<x>  <y>"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace hwsim::lab
