@@ -21,6 +21,12 @@ struct FlowTable {
   std::vector<double> packets;  ///< packets of each chunk, at least 1
 };
 
+/// From the start of a unit's first work to the end of its last.
+template <class T>
+struct FlowSpan {
+  T begin_ns{0.0}, end_ns{0.0};
+};
+
 template <class T>
 struct FlowResult {
   T makespan_ns{0.0};
@@ -80,6 +86,21 @@ class PacketFlow {
       for (std::size_t u = 0; u + 1 < t_.units; ++u) unblock(u, k, of, found);
       for (std::size_t u = t_.units; u-- > 0;) retreat(u, k, of, found);
     }
+    return found;
+  }
+
+  /// By unit, after run(). A unit without work has a span of no length.
+  std::vector<FlowSpan<T>> spans() const {
+    std::vector<FlowSpan<T>> found(t_.units);
+    std::vector<bool> begun(t_.units, false);
+    for (std::size_t k = 0; k < t_.chunks; ++k)
+      for (std::size_t u = 0; u < t_.units; ++u) {
+        const std::size_t i = index(u, k);
+        if (!(t_.ns[i] > T(0.0))) continue;
+        if (!begun[u]) found[u] = {start_[i], end_[i]};
+        begun[u] = true;
+        if (found[u].end_ns < end_[i]) found[u].end_ns = end_[i];
+      }
     return found;
   }
 

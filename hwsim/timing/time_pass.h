@@ -172,12 +172,19 @@ struct PassSlopes {
   FlowSlopes flow;
 };
 
+/// The units that have work.
 template <class T>
-void queue_time(PassTime<T>& time, const std::vector<ChunkCost<T>>& costs, const GpuRates<T>& rates,
-                PassSlopes* slopes) {
+std::vector<std::size_t> busy_units(const PassTime<T>& time) {
   std::vector<std::size_t> units;
   for (std::size_t u = 0; u < kUnitCount; ++u)
     if (time.busy_ns[u] > T(0.0)) units.push_back(u);
+  return units;
+}
+
+template <class T>
+void queue_time(PassTime<T>& time, const std::vector<ChunkCost<T>>& costs, const GpuRates<T>& rates,
+                PassSlopes* slopes) {
+  std::vector<std::size_t> units = busy_units(time);
   if (units.empty()) return;
   const FlowTable<T> table = flow_table(costs, units, rates);
   PacketFlow<T> flow(table);

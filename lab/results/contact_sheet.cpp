@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <string_view>
 
+#include "lab/results/picture_text.h"
 #include "pipeline/image/metrics.h"
 
 namespace hwsim::lab {
@@ -15,41 +14,7 @@ using pipeline::Image;
 
 constexpr int kZoom = 4;
 constexpr int kGapPx = 8;
-constexpr int kTextScale = 3;
-constexpr int kGlyphWidth = 3, kGlyphHeight = 5;
-constexpr int kLabelPx = kGlyphHeight * kTextScale + kGapPx;
-constexpr glm::vec4 kPaper{0.9f, 0.9f, 0.9f, 1.0f}, kInk{0.02f, 0.02f, 0.02f, 1.0f};
-
-/// Five rows of three dots, the top row first, the left dot in the highest bit: enough for ids of techniques.
-const std::map<char, std::array<int, 5>>& glyphs() {
-  static const std::map<char, std::array<int, 5>> font = {
-      {'a', {2, 5, 7, 5, 5}}, {'b', {6, 5, 6, 5, 6}}, {'c', {3, 4, 4, 4, 3}}, {'d', {6, 5, 5, 5, 6}},
-      {'e', {7, 4, 6, 4, 7}}, {'f', {7, 4, 6, 4, 4}}, {'g', {3, 4, 5, 5, 3}}, {'h', {5, 5, 7, 5, 5}},
-      {'i', {7, 2, 2, 2, 7}}, {'j', {1, 1, 1, 5, 2}}, {'k', {5, 5, 6, 5, 5}}, {'l', {4, 4, 4, 4, 7}},
-      {'m', {5, 7, 7, 5, 5}}, {'n', {6, 5, 5, 5, 5}}, {'o', {2, 5, 5, 5, 2}}, {'p', {6, 5, 6, 4, 4}},
-      {'q', {2, 5, 5, 6, 3}}, {'r', {6, 5, 6, 5, 5}}, {'s', {3, 4, 2, 1, 6}}, {'t', {7, 2, 2, 2, 2}},
-      {'u', {5, 5, 5, 5, 7}}, {'v', {5, 5, 5, 5, 2}}, {'w', {5, 5, 7, 7, 5}}, {'x', {5, 5, 2, 5, 5}},
-      {'y', {5, 5, 2, 2, 2}}, {'z', {7, 1, 2, 4, 7}}, {'0', {7, 5, 5, 5, 7}}, {'1', {2, 6, 2, 2, 7}},
-      {'2', {7, 1, 7, 4, 7}}, {'3', {7, 1, 3, 1, 7}}, {'4', {5, 5, 7, 1, 1}}, {'5', {7, 4, 7, 1, 7}},
-      {'6', {7, 4, 7, 5, 7}}, {'7', {7, 1, 2, 2, 2}}, {'8', {7, 5, 7, 5, 7}}, {'9', {7, 5, 7, 1, 7}},
-      {'_', {0, 0, 0, 0, 7}}, {'-', {0, 0, 7, 0, 0}}, {'+', {0, 2, 7, 2, 0}}, {'=', {0, 7, 0, 7, 0}},
-      {':', {0, 2, 0, 2, 0}}, {'.', {0, 0, 0, 0, 2}}, {',', {0, 0, 0, 2, 4}}, {'%', {5, 1, 2, 4, 5}},
-      {'(', {1, 2, 2, 2, 1}}, {')', {4, 2, 2, 2, 4}}, {'/', {1, 1, 2, 4, 4}}};
-  return font;
-}
-
-void write_text(Image& image, int x, int y, std::string_view text) {
-  for (const char c : text) {
-    const auto glyph = glyphs().find(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
-    for (int row = 0; glyph != glyphs().end() && row < kGlyphHeight * kTextScale; ++row)
-      for (int column = 0; column < kGlyphWidth * kTextScale; ++column)
-        if ((glyph->second[static_cast<size_t>(row / kTextScale)] >>
-             (kGlyphWidth - 1 - column / kTextScale)) &
-            1)
-          if (x + column < image.width && y + row < image.height) image.at(x + column, y + row) = kInk;
-    x += (kGlyphWidth + 1) * kTextScale;
-  }
-}
+constexpr int kLabelPx = kTextHeightPx + kGapPx;
 
 glm::vec4 linear_of_srgb(const glm::vec3& encoded) {
   return {pipeline::linear_from_srgb(encoded.x), pipeline::linear_from_srgb(encoded.y),
@@ -145,7 +110,7 @@ Image contact_sheet(std::span<const ShownImage> images, std::span<const Region> 
   Image sheet(kGapPx + columns * (side + kGapPx), kGapPx + static_cast<int>(images.size()) * row_px, kPaper);
   int top = kGapPx;
   for (const ShownImage& image : images) {
-    write_text(sheet, kGapPx, top, image.label);
+    draw_text(sheet, kGapPx, top, image.label);
     int left = kGapPx;
     for (const Region& region : regions) {
       enlarge(sheet, left, top + kLabelPx, region, [&](int x, int y) { return color_at(image, x, y); });

@@ -11,6 +11,7 @@
 #include "lab/base/files.h"
 #include "lab/base/json_text.h"
 #include "lab/request/run_file.h"
+#include "lab/results/picture_text.h"
 #include "pipeline/image/image_io.h"
 
 namespace hwsim::lab {
@@ -34,7 +35,9 @@ void write_images(const std::string& folder, const PointResult& point, const Ref
   const pipeline::Emulation& emulation = *point.emulation;
   pipeline::write_image(emulation.color, folder + "/color.png");
   pipeline::write_image(emulation.color, folder + "/color.exr");
-  pipeline::write_image(heat_picture(emulation.shading_heat, std::max(1.0f, largest(emulation.shading_heat))),
+  const float hottest = std::max(1.0f, largest(emulation.shading_heat));
+  pipeline::write_image(with_scale(heat_picture(emulation.shading_heat, hottest),
+                                   static_cast<double>(hottest), "shader invocations a pixel"),
                         folder + "/heat_shading.png");
   if (!reference) return;
   pipeline::write_image(reference->image, folder + "/reference.png");

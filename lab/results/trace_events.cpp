@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "hwsim/engines/schedule.h"
 #include "lab/base/json_text.h"
 #include "lab/results/results.h"
 
@@ -39,15 +40,27 @@ Json counter(const std::string& name, double start_ns, double value) {
           {"args", {{"value", value}}}};
 }
 
-void append_pass(Json& events, const PassTiming& pass, double start_ns) {
+/// What stands for the schedule of an engine that has none: each unit works from the begin of the pass, for
+/// as long as it is busy.
+PassSchedule unscheduled(const PassTiming& pass, double start_ns) {
+  PassSchedule schedule{start_ns, start_ns + pass.time_ns, {}};
+  for (size_t u = 0; u < kUnitCount; ++u)
+    if (pass.busy_ns[u] > 0.0)
+      schedule.units[u] = UnitSpan{start_ns, start_ns + std::min(pass.busy_ns[u], pass.time_ns)};
+  return schedule;
+}
+
+void append_pass(Json& events, const PassTiming& pass, const PassSchedule& schedule) {
+  const double start_ns = schedule.begin_ns;
   events.push_back(slice(kPassTrack, pass.name, start_ns, pass.time_ns,
                          {{"kind", pass_kind_name(pass.kind)}, {"limiter", unit_name(pass.limiter)}}));
   for (int u = 0; u < kUnitCount; ++u) {
     const auto i = static_cast<size_t>(u);
-    if (pass.busy_ns[i] <= 0.0) continue;
-    events.push_back(
-        slice(1 + u, pass.name, start_ns, std::min(pass.busy_ns[i], pass.time_ns),
-              {{"sol_pct", 100.0 * pass.sol_ratio[i]}, {"stack_us", microseconds(pass.stack_ns[i])}}));
+    if (const auto& span = schedule.units[i])
+      events.push_back(slice(1 + u, pass.name, span->begin_ns, span->end_ns - span->begin_ns,
+                             {{"busy_us", microseconds(pass.busy_ns[i])},
+                              {"sol_pct", 100.0 * pass.sol_ratio[i]},
+                              {"stack_us", microseconds(pass.stack_ns[i])}}));
   }
   if (pass.time_ns <= 0.0) return;
   events.push_back(counter("dram read GB/s", start_ns, pass.dram_bytes.total_read() / pass.time_ns));
@@ -61,9 +74,12 @@ std::string trace_event_json(const PointResult& point) {
   events.push_back(track_name(kPassTrack, "passes"));
   for (int u = 0; u < kUnitCount; ++u)
     events.push_back(track_name(1 + u, std::string(unit_name(static_cast<Unit>(u)))));
+  std::vector<PassSchedule> schedules;
+  if (point.timing.engine == Engine::queue) schedules = frame_schedule(point.emulation->trace, *point.gpu);
   double start_ns = 0.0;
-  for (const PassTiming& pass : point.timing.passes) {
-    append_pass(events, pass, start_ns);
+  for (size_t p = 0; p < point.timing.passes.size(); ++p) {
+    const PassTiming& pass = point.timing.passes[p];
+    append_pass(events, pass, schedules.empty() ? unscheduled(pass, start_ns) : schedules[p]);
     start_ns += pass.time_ns;
   }
   events.push_back(counter("dram read GB/s", start_ns, 0.0));

@@ -1,6 +1,7 @@
 // What a run prints and leaves behind.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
@@ -144,6 +145,28 @@ TEST_F(RunTest, TraceHasSlicesAndCountersOnly) {
   }
   EXPECT_GT(slices, 1u);
   EXPECT_GT(counters, 1u);
+}
+
+// Units begin when the queue gives them their first work, and not all at the begin of their pass.
+TEST_F(RunTest, TraceHasTheScheduleOfTheQueue) {
+  ASSERT_EQ(run("--no-image --out result").status, 0);
+  const json trace = json::parse(place.read("result/trace.json"));
+  std::map<std::string, std::pair<double, double>> passes;
+  std::size_t later = 0, slices = 0;
+  for (const json& event : trace["traceEvents"]) {
+    if (event["ph"] != "X") continue;
+    const double begin = event["ts"], end = begin + event["dur"].get<double>();
+    if (event["tid"] == 0) {
+      passes[event["name"]] = {begin, end};
+      continue;
+    }
+    const auto [first, last] = passes.at(event["name"]);
+    EXPECT_GE(begin, first * (1.0 - 1e-12)) << event;
+    EXPECT_LE(end, last * (1.0 + 1e-12)) << event;
+    later += begin > first;
+    ++slices;
+  }
+  EXPECT_GT(later, slices / 2) << "what comes behind another unit begins later";
 }
 
 TEST_F(RunTest, CsvHasOneHeaderAndRecordsOfItsLength) {
