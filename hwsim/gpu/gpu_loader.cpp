@@ -13,6 +13,7 @@
 #include "hwsim/gpu/gpu_files.h"
 #include "hwsim/gpu/gpu_keys.h"
 #include "hwsim/gpu/gpu_rules.h"
+#include "hwsim/gpu/sheet_words.h"
 
 namespace hwsim {
 namespace {
@@ -26,6 +27,7 @@ constexpr std::string_view kSchemaHelp = "`hwsim config schema gpu` lists the ke
 struct Resolved {
   TomlEntry entry;
   Origin origin;
+  std::string word;  ///< a data sheet's, that was written in place of the key; empty: the key itself
 };
 
 /// The keys that say what a file is, not what the GPU is.
@@ -260,7 +262,30 @@ class GpuFiles::Loader {
     return std::nullopt;
   }
 
+  /// A file that says a number twice, by two of its names, does not say which one holds.
+  bool is_said_twice(const Resolved& resolved) {
+    const auto before = resolved_.find(resolved.entry.path);
+    if (before == resolved_.end() || before->second.word == resolved.word ||
+        before->second.origin.layer != resolved.origin.layer ||
+        before->second.origin.file != resolved.origin.file)
+      return false;
+    const std::string other = before->second.word.empty() ? resolved.entry.path : before->second.word;
+    const std::string own = resolved.word.empty() ? resolved.entry.path : resolved.word;
+    Diagnostic d;
+    d.code = "C025";
+    d.message = "`" + own + "` and `" + other + "` are the same number";
+    d.place = resolved.entry.key_place;
+    d.help = "leave one of them out";
+    problems_.push_back(std::move(d));
+    return true;
+  }
+
   void add(Resolved resolved, const std::string& subject) {
+    if (const SheetWord* word = find_sheet_word(resolved.entry.path)) {
+      resolved.word = resolved.entry.path;
+      translate(*word, resolved.entry);
+    }
+    if (is_said_twice(resolved)) return;
     const std::string name = resolved.entry.path;
     const Key* key = find_key(keys_, name);
     if (!key && problems_.size() >= kProblemsShown) {
@@ -269,6 +294,7 @@ class GpuFiles::Loader {
     }
     if (!key) {
       Diagnostic d = unknown_key(keys_, name, subject, resolved.entry.key_place);
+      if (d.hint.empty()) d.hint = did_you_mean(name, sheet_word_names());
       const auto inherited = resolved_.find(nearest_key(keys_, name));
       if (inherited != resolved_.end() && inherited->second.entry.value && inherited->second.origin.line > 0)
         d.notes.push_back("inherited value " + to_toml(*inherited->second.entry.value) + " from " +
@@ -310,7 +336,13 @@ class GpuFiles::Loader {
     }
     const TomlEntry& entry = found->second.entry;
     origin = found->second.origin;
-    if (!entry.value || !assign(key, *entry.value, entry.value_place, problems_)) return;
+    if (!entry.value) return;
+    if (!assign(key, *entry.value, entry.value_place, problems_)) {
+      if (!found->second.word.empty())
+        problems_.back().notes.push_back("`" + found->second.word + "` of data sheets is the key `" + name +
+                                         "`");
+      return;
+    }
     check_interval(key, entry, origin);
   }
 
@@ -365,7 +397,9 @@ bool lay_over(GpuConfig& gpu, std::span<const Assignment> sets) {
   const std::vector<Key> keys = keys_of(gpu);
   for (const Assignment& set : sets) {
     if (set.group() != "gpu") continue;
-    const Key* key = find_key(keys, std::string_view(set.path).substr(set.path.find('.') + 1));
+    std::string_view name = std::string_view(set.path).substr(set.path.find('.') + 1);
+    if (const SheetWord* word = find_sheet_word(name); word && word->factor == 1.0) name = word->key;
+    const Key* key = find_key(keys, name);
     std::optional<TomlValue> value = value_of_assignment(set, problems);
     if (!key || !value) return false;
     if (const auto factor = scale_factor(*key, *value)) value = scaled(value_in(key->slot), *factor);

@@ -259,6 +259,9 @@ std::span<const ConfigCode> config_codes() {
        "A file changes the number of cores, ROPs or rasterizers, or the bandwidth, and keeps a rate that "
        "goes with it "
        "from the GPU that it extends."},
+      {"C025", "one number, two names",
+       "A file says a number by its key and by a word of data sheets, or by two of these: nothing says which "
+       "one holds."},
   };
   return kCodes;
 }

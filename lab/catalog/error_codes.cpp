@@ -24,7 +24,10 @@ constexpr ErrorCode kCodes[] = {
      "emulator.skip is all, none, or a list of the skips to use. No skip changes an image or a count."},
     {"U008", "no technique has this parameter",
      "--set technique.KEY applies to every chosen technique with that parameter; one at least must have it."},
-    {"U009", "no such camera", "--camera takes the name of one of the scene's cameras, or its index from 0."},
+    {"U009", "no such camera",
+     "--camera takes the name of one of the scene's cameras, or its index from 0; --camera-eye and "
+     "--camera-target "
+     "place another one."},
     {"U010", "cannot write",
      "The folder is missing, full or not writable. Nothing that looks complete was left behind."},
     {"U011", "cannot read", "The file is missing, too large, not a file, or may not be read."},

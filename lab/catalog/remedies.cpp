@@ -40,6 +40,7 @@ constexpr std::array kRemedies = {
     Remedy{"C022", "write a plain value, or { value = 1, provenance = \"assumed\" }"},
     Remedy{"C023", "give one of the files another id"},
     Remedy{"C024", "write the rate into the file, too, or begin with `hwsim gpu new`"},
+    Remedy{"C025", "leave one of the two names out"},
     Remedy{"G001", kReportTechnique},
     Remedy{"G002", "1, 2, 4, 8, 16 or 32 samples"},
     Remedy{"G003",

@@ -125,6 +125,19 @@ std::string errors_page(const Workplace& place) {
   return page;
 }
 
+std::string sources_page(const Workplace& place) {
+  std::string page =
+      "# Sources\n\nThis page lists the documents that values of GPU files name by a key, as `hwsim list "
+      "sources` prints "
+      "them.\n[Hardware sources](../hardware_sources.md) says what is known of each GPU from them, and where "
+      "they "
+      "contradict each other.\n\n" +
+      table_head({"key", "document", "what was taken"});
+  for (const json& source : printed(place, "list sources --json"))
+    page += row({"[" + source["key"].get<std::string>() + "]", source["document"], source["taken"]});
+  return page;
+}
+
 std::string reference_path(const std::string& name) {
   return hwsim::test::source_dir() + "/docs/reference/" + name + ".md";
 }
@@ -146,6 +159,7 @@ void compare(const std::string& name, const std::function<std::string(const Work
 TEST(Reference, CountersAreThoseOfTheProgram) { compare("counters", counters_page); }
 TEST(Reference, ParametersAreThoseOfTheProgram) { compare("techniques", techniques_page); }
 TEST(Reference, GpuKeysAreThoseOfTheProgram) { compare("gpu_keys", gpu_keys_page); }
+TEST(Reference, SourcesAreThoseOfTheProgram) { compare("sources", sources_page); }
 TEST(Reference, CodesAreThoseOfTheProgram) { compare("errors", errors_page); }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include "hwsim/base/diagnostics.h"
 #include "hwsim/gpu/gpu_keys.h"
 #include "hwsim/gpu/gpu_rates.h"
+#include "hwsim/gpu/sheet_words.h"
 #include "hwsim/sample_gpu.h"
 
 namespace hwsim::test {
@@ -300,6 +302,38 @@ TEST(GpuSchema, ListsEveryKeyWithItsRange) {
     EXPECT_EQ(key.contains("default"), !info.has(kRequired)) << name;
   }
   EXPECT_EQ(schema.at("properties").at("core_clock_mhz").at("anyOf").at(0).at("minimum"), 1.0);
+}
+
+TEST_F(GpuFiles, WordsOfDataSheetsAreKeys) {
+  write_child("child",
+              "rops = 48\ntmus = { value = 96, interval = [90, 100] }\nsms = 12\ninfinity_cache = 2\n");
+  const GpuConfig c = load("child", {{"gpu.bandwidth_gb_s", "300"}, {"gpu.sms", "x2"}});
+  EXPECT_EQ(c.crop_units, 48.0);
+  EXPECT_EQ(c.tex_bilinear_per_clk, 96.0);
+  EXPECT_EQ(c.shader_cores, 24.0);
+  EXPECT_EQ(c.llc_size_kib, 2048.0);
+  EXPECT_EQ(c.dram_bandwidth_gb_s, 300.0);
+  EXPECT_EQ(c.origins.find("tex_bilinear_per_clk")->second.interval, (std::array<double, 2>{90.0, 100.0}));
+  EXPECT_EQ(load("base", {{"gpu.l2_mib", "3"}}).l2_size_kib, 3072.0);
+  EXPECT_EQ(load("base", {{"gpu.cus", "9"}}).shader_cores, 9.0);
+  for (const SheetWord& word : sheet_words()) {
+    const auto keys = gpu_keys();
+    EXPECT_TRUE(std::ranges::any_of(keys, [&](const KeyInfo& key) { return key.name == word.key; }))
+        << word.word;
+    EXPECT_TRUE(std::ranges::none_of(keys, [&](const KeyInfo& key) { return key.name == word.word; }))
+        << word.word;
+  }
+}
+
+TEST_F(GpuFiles, MessagesNameTheWordAndTheKey) {
+  const Diagnostic twice = error_in("rops = 48\ncrop_units = 32\n");
+  EXPECT_EQ(twice.code, "C025");
+  EXPECT_NE(twice.message.find("`crop_units` and `rops`"), std::string::npos) << twice.message;
+  const Diagnostic range = error_in("rops = -1\n");
+  EXPECT_EQ(range.code, "C014");
+  ASSERT_FALSE(range.notes.empty());
+  EXPECT_NE(range.notes.back().find("`rops` of data sheets is the key `crop_units`"), std::string::npos);
+  EXPECT_EQ(error_in("infinity_cach = 64\n").hint, "did you mean `infinity_cache`?");
 }
 
 TEST(GpuKeys, CarryTheirUnitAndEveryCodeIsExplained) {

@@ -82,11 +82,9 @@ TEST(DocLinks, NothingRefersToDocumentsThatAreNotHere) {
 }
 
 TEST(DocLinks, EverySourceOfAGpuFileIsListed) {
-  const fs::path page = "docs/hardware_sources.md";
+  const fs::path table = "configs/sources.csv";
   std::set<std::string> listed;
-  for (const TextLine& line : lines_of(page))
-    for (const std::string& key : matches(line.text, std::regex(R"rx(^\| \[([^\]]+)\] \|)rx")))
-      listed.insert(key);
+  for (const TextLine& line : lines_of(table)) listed.insert(line.text.substr(0, line.text.find(',')));
   const std::regex quoted(R"rx(source = "([^"]*)")rx"), bracketed(R"rx(\[([^\],]+))rx");
   std::set<std::string> used;
   for (const fs::path& file : project_files({".toml"}))
@@ -94,9 +92,16 @@ TEST(DocLinks, EverySourceOfAGpuFileIsListed) {
       for (const std::string& source : matches(line.text, quoted))
         for (const std::string& key : matches(source, bracketed)) {
           used.insert(key);
-          EXPECT_TRUE(listed.contains(key)) << line.place() << ": [" << key << "] is not in " << page;
+          EXPECT_TRUE(listed.contains(key)) << line.place() << ": [" << key << "] is not in " << table;
         }
   EXPECT_GT(used.size(), 30u) << "the GPU files were not found";
+  const std::regex in_page(R"rx((?:^|[^\]\w])\[([A-Z][A-Z0-9]+(?:-[A-Z0-9]+)*)\](?!\())rx");
+  for (const fs::path& page : project_files({".md"})) {
+    if (*page.begin() != "docs") continue;
+    for (const TextLine& line : prose_of(page))
+      for (const std::string& key : matches(line.text, in_page))
+        EXPECT_TRUE(listed.contains(key)) << line.place() << ": [" << key << "] is not in " << table;
+  }
 }
 
 TEST(DocLinks, EveryPageOpensBySayingWhatItIsFor) {
