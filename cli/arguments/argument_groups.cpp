@@ -109,6 +109,17 @@ void add_view_flags(CLI::App& app, ViewArguments& view) {
       ->type_name("WxH");
   app.add_option("--camera", view.camera, "A camera of the scene; default the first")
       ->type_name("NAME|INDEX");
+  CLI::Option* eye =
+      app.add_option("--camera-eye", view.camera_eye, "A camera of your own stands here, in meters, y up")
+          ->excludes("--camera")
+          ->type_name("X,Y,Z");
+  CLI::Option* target = app.add_option("--camera-target", view.camera_target, "and looks there")
+                            ->needs(eye)
+                            ->type_name("X,Y,Z");
+  eye->needs(target);
+  app.add_option("--camera-fov", view.camera_fov, "from the bottom to the top of the picture; default 60")
+      ->needs(eye)
+      ->type_name("DEGREES");
   app.add_option("--lights", view.point_lights, "Point lights added to those of the scene")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");

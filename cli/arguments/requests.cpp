@@ -20,6 +20,9 @@ std::vector<Assignment> parse_sets(const std::vector<std::string>& texts, std::v
 void apply_flags(const ViewArguments& options, View& view) {
   view.resolution = options.resolution.value_or(view.resolution);
   view.camera = options.camera.value_or(view.camera);
+  if (!options.camera_eye.empty())
+    view.camera = "eye=" + options.camera_eye + " target=" + options.camera_target +
+                  (options.camera_fov.empty() ? "" : " fov=" + options.camera_fov);
   view.point_lights = options.point_lights.value_or(view.point_lights);
   view.shadows = view.shadows && !options.no_shadows;
   view.anisotropy = options.anisotropy.value_or(view.anisotropy);
@@ -47,7 +50,7 @@ void check_image_flags(const RunArguments& options, const View& view, std::vecto
                                  "an image is filtered as it is"));
   };
   refuse(options.view.resolution.has_value(), "--resolution");
-  refuse(options.view.camera.has_value(), "--camera");
+  refuse(options.view.camera.has_value() || !options.view.camera_eye.empty(), "--camera");
   refuse(options.view.point_lights.has_value(), "--lights");
   refuse(options.view.anisotropy.has_value(), "--anisotropy");
 }

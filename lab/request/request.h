@@ -108,7 +108,11 @@ void describe(Visitor& v, View& view) {
   v.field(
       {{"height_px", 1, kMaxSidePx, kNoFlags, "height of the frame"}, "", "height_px", kWork | kReference},
       height_px);
-  v.field({{"camera", 0, 0, kNoFlags, "name or index of a camera of the scene"}, "", "camera"}, camera);
+  v.field({{"camera", 0, 0, kNoFlags,
+            "name or index of a camera of the scene, or one of its own: \"eye=1,2,3 target=0,0,0 fov=60\""},
+           "",
+           "camera"},
+          camera);
   v.field({{"point_lights", 0, kMaxPointLights, kNoFlags, "seeded point lights added to those of the scene"},
            "scene",
            "point_lights",

@@ -13,6 +13,7 @@
 #include "hwsim/base/file_name.h"
 #include "lab/base/messages.h"
 #include "lab/request/image_input.h"
+#include "lab/store/free_camera.h"
 #include "pipeline/base/sealed_file.h"
 #include "pipeline/generate/generator_digest.h"
 #include "pipeline/open/scene_source.h"
@@ -176,7 +177,7 @@ std::optional<SceneSummary> remembered_summary(const std::string& path, const Ca
 }  // namespace
 
 SceneView::SceneView(View plan, const Cache& cache, Observer& observer)
-    : plan_(std::move(plan)), cache_(cache) {
+    : plan_(std::move(plan)), cache_(cache), free_camera_(free_camera(plan_.camera)) {
   if (is_image_file(plan_.scene)) {
     load_image();
     return;
@@ -195,8 +196,18 @@ SceneView::SceneView(View plan, const Cache& cache, Observer& observer)
     }
     if (settled) cache.write(path, summary_kind(), encode(summary_, stamps), observer);
   }
-  camera_ = find_camera(summary_, plan_.camera);
+  camera_ = free_camera_ ? adopt_camera() : find_camera(summary_, plan_.camera);
   for (const Diagnostic& note : summary_.notes) observer.report(note);
+}
+
+/// The camera stands behind those of the scene. What is known of the scene says so: traces and references are
+/// kept by its hash and the camera's index.
+int SceneView::adopt_camera() {
+  if (scene_) scene_ = std::make_shared<const pipeline::Scene>(with_camera(*scene_, *free_camera_));
+  const auto index = static_cast<int>(summary_.cameras.size());
+  summary_.cameras.push_back(free_camera_->name);
+  summary_.content_hash += " " + free_camera_->name;
+  return index;
 }
 
 void SceneView::load() {
@@ -219,7 +230,9 @@ void SceneView::load_image() {
 }
 
 const std::shared_ptr<const pipeline::Scene>& SceneView::scene() {
-  if (!scene_) load();
+  if (scene_) return scene_;
+  load();
+  if (free_camera_) camera_ = adopt_camera();
   return scene_;
 }
 

@@ -3,6 +3,7 @@
 // notes) is remembered on disk beside the stamps of its files, so that a run whose traces are cached never
 // loads it. An image that stands for a scene has neither geometry nor cameras, and sets the resolution.
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,8 @@ struct SceneSummary {
 
 class SceneView {
  public:
-  /// Finds the camera by name or index. `cache` must outlive the view. Throws InputError.
+  /// Finds the camera by name or index, or makes one of words (free_camera.h). `cache` must outlive the view.
+  /// Throws InputError.
   SceneView(View plan, const Cache& cache, Observer& observer);
 
   const View& plan() const { return plan_; }
@@ -40,10 +42,12 @@ class SceneView {
  private:
   void load();
   void load_image();
+  int adopt_camera();
 
   View plan_;
   const Cache& cache_;
   SceneSummary summary_;
+  std::optional<pipeline::Camera> free_camera_;  ///< none: one of the scene's
   int camera_ = 0;
   std::shared_ptr<const pipeline::Scene> scene_;
   std::shared_ptr<const pipeline::RawImage> image_;  ///< stands for the scene, which is empty then
