@@ -157,7 +157,9 @@ class Builder {
     u->separation = static_cast<float>(o_.separation);
     u->unit_mean_normal = o_.mean_normal == AgaaMeanNormal::unit;
     u->seeds = o_.seeds;
-    const bool planes = o_.plane_path == AgaaPlanePath::on ||
+    const bool given =
+        o_.plane_path == AgaaPlanePath::given || (o_.plane_path == AgaaPlanePath::automatic && layers_ > 1);
+    const bool planes = given || o_.plane_path == AgaaPlanePath::on ||
                         (o_.plane_path == AgaaPlanePath::automatic && features_.compressed_depth_read);
     u->reads_planes = planes;
     u->layers = layers_;
@@ -168,6 +170,7 @@ class Builder {
     pass.sampled = {depth_, normal_};
     pass.targets = {codes_};
     if (planes) pass.depth_planes = depth_;
+    pass.depth_planes_given = given;
   }
 
   AggregateUniforms aggregate_uniforms(const AggregateTargets& targets) const {
@@ -324,11 +327,24 @@ constexpr MessageCode kPlaceLeftEmpty = {
     "Mixed samples: the color samples of a target divide its raster samples, so three aggregates are stored "
     "as four. The image is not affected; memory and its bandwidth are those of four."};
 
+constexpr MessageCode kPlanesGiven = {"T107", "depth planes are given",
+                                      "Above 8 samples a pixel the paper (section 5) reads the planes of "
+                                      "compressed depth, which no GPU lets shaders read: "
+                                      "it makes them beforehand, and its times leave that out. So do ours. "
+                                      "plane_path=off goes sample by sample."};
+
 /// Samples of a pixel that the aggregates' blended targets have; 0 without such targets.
 int target_samples(const WorkTrace& trace) {
   for (const PassWork& pass : trace.passes)
     if (pass.name == "generate" && !pass.color_targets.empty()) return pass.color_targets.front().samples;
   return 0;
+}
+
+/// Whether pixels took their aggregates from planes in a frame that may have been given them.
+bool has_given_planes(const AgaaOptions& options, const WorkTrace& trace) {
+  const bool may = options.plane_path == AgaaPlanePath::given ||
+                   (options.plane_path == AgaaPlanePath::automatic && options.samples > 8);
+  return may && total(trace).technique[AgaaCounters::agaa_plane_path_pixels] > 0;
 }
 
 std::vector<Diagnostic> notes(const AgaaOptions& options, const DrawnFrame& frame) {
@@ -337,6 +353,17 @@ std::vector<Diagnostic> notes(const AgaaOptions& options, const DrawnFrame& fram
   std::vector<Diagnostic> all =
       lost_light(frame.surfaces, record,
                  "forward techniques, as msaa8x, show it; so does `sbaa_merge` but for occlusion");
+  if (has_given_planes(options, frame.trace)) {
+    Diagnostic given;
+    given.severity = Severity::note;
+    given.code = kPlanesGiven.code;
+    given.message =
+        "the definition reads depth planes that are given, as in the paper above 8 samples a pixel; no GPU "
+        "lets "
+        "shaders read them";
+    given.help = "plane_path=off goes sample by sample";
+    all.push_back(std::move(given));
+  }
   const int samples = target_samples(frame.trace);
   if (samples <= options.aggregates) return all;
   Diagnostic note;
@@ -360,7 +387,7 @@ constexpr CounterLaw kLaws[] = {
 }  // namespace
 
 Room agaa_room() {
-  static constexpr MessageCode kCodes[] = {kPlaceLeftEmpty, kUnlitIsEmission};
+  static constexpr MessageCode kCodes[] = {kPlaceLeftEmpty, kPlanesGiven, kUnlitIsEmission};
   const TechniqueInfo agaa = base_technique(
       "agaa",
       "aggregate G-buffer: dense visibility, up to four pre-filtered surfaces a pixel (Crassin et al. 2016)",

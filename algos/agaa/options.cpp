@@ -60,8 +60,11 @@ void describe(OptionList& list, AgaaOptions& o) {
   list.choice("accumulate", o.accumulate, "auto|blend|atomics",
               "aggregates add up by blending into mixed samples, or by atomics");
   describe_centroid(list, o.centroid);
-  list.choice("plane_path", o.plane_path, "auto|on|off",
-              "depth tiles that are compressed to few planes take those for aggregates");
+  list.choice(
+      "plane_path", o.plane_path, "auto|on|off|given",
+      "depth tiles that are compressed to few planes take those for aggregates: where the GPU lets shaders "
+      "read them (on), or for nothing, as the paper measures layers (given); auto: given in layers, else on "
+      "where the GPU can");
   list.choice("empty_exit", o.empty_exit, "off|on",
               "whether the definition leaves pixels of sky alone at once");
   list.choice("a2c_dither", o.alpha_dither, "off|on", "alpha to coverage rounds by 2x2 pixels");

@@ -16,7 +16,7 @@ enum class AgaaGloss : std::uint8_t { folded, separate };
 enum class AgaaScale : std::uint8_t { world, footprint };  ///< what the length k is measured by
 enum class AgaaMeanNormal : std::uint8_t { unit, raw };    ///< in the search of the first seed
 enum class AgaaAccumulate : std::uint8_t { automatic, blend, atomics };
-enum class AgaaPlanePath : std::uint8_t { automatic, on, off };
+enum class AgaaPlanePath : std::uint8_t { automatic, on, off, given };
 enum class AgaaShadowAxis : std::uint8_t { depth, places, receiver };
 
 struct AgaaOptions {

@@ -1,5 +1,6 @@
 #pragma once
-// Large pages for memory that is written from end to end: a fault for each 2 MiB in place of one for each 4 KiB.
+// Large pages for memory that is written from end to end: a fault for each 2 MiB in place of one for each 4
+// KiB.
 #include <cstddef>
 #include <type_traits>
 

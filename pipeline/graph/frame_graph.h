@@ -121,6 +121,8 @@ struct Pass {
   /// Compute: one of `sampled`, a depth image whose tiles the program may read as the planes that they are
   /// compressed to (GpuFeatures::compressed_depth_read).
   ImageId depth_planes;
+  /// The planes are given: the GPU need not let programs read them, and no pass of the frame makes them.
+  bool depth_planes_given = false;
 
   std::vector<DrawBatch> batches;  // draw
   PipelineState state;             // full_screen

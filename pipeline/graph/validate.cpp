@@ -366,7 +366,7 @@ class Validator {
     if (pass.compute != nullptr && pass.compute->ordered_storage && !features_.float_atomics)
       tell("G006", "compute pass `" + pass.name + "` adds floats by atomics, which this GPU cannot",
            "gpu.features.float_atomics = true");
-    if (pass.depth_planes && !features_.compressed_depth_read)
+    if (pass.depth_planes && !pass.depth_planes_given && !features_.compressed_depth_read)
       tell("G006", "compute pass `" + pass.name + "` reads compressed depth, which this GPU cannot",
            "gpu.features.compressed_depth_read = true");
     if (pass.depth_planes &&

@@ -31,6 +31,11 @@ HWY_INLINE TilePlace place_in_tile(const GpuImage& image, LaneI x, LaneI y) {
   return {block, lane};
 }
 
+/// The sample (of all layers) within the image, as coordinates are clamped.
+HWY_INLINE LaneI place_in_samples(const GpuImage& image, LaneI sample) {
+  return min(max(sample, LaneI(0)), LaneI(image.samples * image.layers - 1));
+}
+
 /// Where the words of texels lie: in GpuImage::texels, those of `in_packed` in GpuImage::packed.
 struct TexelWords {
   LaneI first, packed;
@@ -48,7 +53,8 @@ struct TexelWords {
 };
 
 /// The place of a texel in its image.
-HWY_INLINE TexelWords texel_words(const GpuImage& image, LaneI x, LaneI y, LaneI sample) {
+HWY_INLINE TexelWords texel_words(const GpuImage& image, LaneI x, LaneI y, LaneI any_sample) {
+  const LaneI sample = place_in_samples(image, any_sample);
   const auto [block, lane] = place_in_tile(image, x, y);
   const LaneM none = LaneI(0) > LaneI(0);
   const LaneI words(image.words * kBlockLanes);
@@ -87,7 +93,7 @@ HWY_INLINE void track_texels(const ResourceView& resources, int slot, LaneI x, L
   const std::int32_t bytes = info(image.format).bytes;  // 64 texels of it are as many lines
   const LaneI line =
       LaneI(static_cast<std::int32_t>(resources.image_first_line[static_cast<std::size_t>(slot)])) +
-      (block * LaneI(image.samples * image.layers) + sample) * LaneI(bytes) +
+      (block * LaneI(image.samples * image.layers) + place_in_samples(image, sample)) * LaneI(bytes) +
       shift_right<6>(lane * LaneI(bytes));
   track_lines(*resources.tracker, line, lanes, first_lane, static_cast<std::uint32_t>(bytes));
 }

@@ -262,7 +262,7 @@ TEST(Agaa, LayersOfEightSamplesAreNativeSamples) {
   const auto scene = share(patches({{-0.8f, 0.33f, 0, {0.8f, 0.3f, 0.1f}, 0.7f},
                                     {-0.2f, 0.9f, 0.1f, {0.1f, 0.6f, 0.9f}, -0.4f},
                                     {-0.6f, 0.6f, 0.5f, {0.9f, 0.9f, 0.2f}, 0.0f, 0.4f}}));
-  const std::string technique = "agaa:c=4,msaa=32,k_mode=footprint,footprint_px=32";
+  const std::string technique = "agaa:c=4,msaa=32,plane_path=off,k_mode=footprint,footprint_px=32";
   const Shot layered{scene, technique}, native{scene, technique, native_features()};
   const Planes depth_a = planes_of(layered, "depth"), depth_b = planes_of(native, "depth");
   EXPECT_EQ(difference(depth_a.image, depth_b.image, "depth"), "");

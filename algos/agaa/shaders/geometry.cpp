@@ -97,7 +97,8 @@ struct GenerateShader {
     I aggregate(0);
     const int bits = u.aggregate.code_bits;
     s.uniform_branch(kCodeBlock, bits > 0, [&]() HWY_ATTR {
-      const I first = min(lowest_bit(mask), I(31));
+      // A lane without coverage asks for the last sample: its texel exists, and nothing uses what it holds.
+      const I first = min(lowest_bit(mask), I(u.raster_samples - 1));
       const I layer = shift_right<3>(first) + I(s.layer());
       const I codes = to_int(s.load_image(0, s.pixel_x(), s.pixel_y(), layer).x);
       aggregate = shift_right_by(codes, (first & I(7)) * I(bits)) & I((1 << bits) - 1);
