@@ -51,7 +51,7 @@ ExitStatus rank(const RankArguments& options, Context& context) {
   context.log.say(plan_text(plan));
   InterruptGuard guard;
   RunRecord record(options.out, {plan, plan.view.scene + options.budget, context.arguments,
-                                 RunRecord::Layout::folder_a_point});
+                                 RunRecord::Layout::folder_a_point, options.common.jobs});
   guard.remove_on_interrupt(record.partial());
   pipeline::Image sheet;
   const Ranking ranking = lab.rank(plan, options.budget, &record, &sheet);

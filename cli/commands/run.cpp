@@ -36,7 +36,8 @@ ExitStatus run(const RunArguments& options, Context& context) {
   Lab lab(lab_options(options, context.log));
   const RunPlan plan = plan_of(options, lab);
   context.log.say(plan_text(plan, options.common.jobs, lab.expected_seconds(plan)));
-  RunRecord record(options.out, {plan, plan_key(plan, options.common.jobs), context.arguments});
+  RunRecord record(options.out, {plan, plan_key(plan, options.common.jobs), context.arguments,
+                                 RunRecord::Layout::automatic, options.common.jobs});
   guard.remove_on_interrupt(record.partial());
   ShownRun shown(record, context.log);
   const lab::Run run = simulate(lab, plan, record, shown);

@@ -50,7 +50,7 @@ void Session::run(const RunPlan& given, RunSink& sink, StageProgress& progress) 
   }
   const RunContext run{plan, scene.summary(), reference};
   sink.begin(run);
-  Simulator simulator(plan, scene, reference, traces_);
+  Simulator simulator(plan, scene, reference, traces_, jobs_);
   for (const algos::TechniqueChoice& technique : plan.techniques)
     for (const GpuConfig& gpu : plan.gpus) {
       const std::string name = point_name(technique, gpu);

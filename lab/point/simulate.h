@@ -37,8 +37,10 @@ struct PointResult {
 /// Runs the points of one plan; GPUs that share a functional configuration share an emulation.
 class Simulator {
  public:
-  Simulator(const RunPlan& plan, SceneView& scene, const ReferenceImage* reference, TraceStore& store)
-      : plan_(plan), scene_(scene), reference_(reference), store_(store) {}
+  /// `jobs`: threads that compare images.
+  Simulator(const RunPlan& plan, SceneView& scene, const ReferenceImage* reference, TraceStore& store,
+            int jobs)
+      : plan_(plan), scene_(scene), reference_(reference), store_(store), jobs_(jobs) {}
   /// Throws InputError, or InternalError when an invariant is violated.
   PointResult run(const algos::TechniqueChoice& technique, const GpuConfig& gpu,
                   const ProgressFunction& progress);
@@ -48,6 +50,8 @@ class Simulator {
   SceneView& scene_;
   const ReferenceImage* reference_;
   TraceStore& store_;
+  int jobs_;
+  std::optional<pipeline::ComparedReference> compared_;
 };
 
 /// Times the point's work on its GPU as the plan says, with the interval where the calibration knows the GPU.

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "lab/base/base64.h"
+#include "pipeline/image/known_srgb.h"
 
 namespace hwsim::lab {
 namespace {
@@ -67,9 +68,10 @@ constexpr std::array kSteps = {Step{95, 1.0}, Step{90, 1.0}, Step{82, 1.0},  Ste
 Picture color_picture(const pipeline::Image& image) {
   Picture picture{.width = image.width, .height = image.height};
   picture.texels.reserve(image.pixels.size() * 3);
+  pipeline::KnownSrgb encoded;
   for (const glm::vec4& pixel : image.pixels)
     for (const float linear : {pixel.x, pixel.y, pixel.z})
-      picture.texels.push_back(byte_of(pipeline::srgb_from_linear(std::clamp(linear, 0.0f, 1.0f))));
+      picture.texels.push_back(byte_of(encoded(std::clamp(linear, 0.0f, 1.0f))));
   return picture;
 }
 

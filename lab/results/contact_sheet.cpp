@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lab/results/picture_text.h"
+#include "pipeline/image/known_srgb.h"
 #include "pipeline/image/metrics.h"
 
 namespace hwsim::lab {
@@ -57,12 +58,12 @@ std::vector<double> summed_area(std::span<const ShownImage> images, int width, i
 
 ShownImage shown_image(std::string label, const Image& color, const Image* error) {
   ShownImage shown{std::move(label), color.width, color.height, {}, {}};
+  pipeline::KnownSrgb encoded;
   shown.srgb8.reserve(color.pixels.size());
   for (const glm::vec4& pixel : color.pixels) {
     std::uint32_t packed = 0;
     for (glm::length_t c = 0; c < 3; ++c)
-      packed |= static_cast<std::uint32_t>(
-                    std::lround(255.0f * std::clamp(pipeline::srgb_from_linear(pixel[c]), 0.0f, 1.0f)))
+      packed |= static_cast<std::uint32_t>(std::lround(255.0f * std::clamp(encoded(pixel[c]), 0.0f, 1.0f)))
                 << (8 * c);
     shown.srgb8.push_back(packed);
   }

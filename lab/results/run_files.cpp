@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <sys/utsname.h>
 
-#include <algorithm>
 #include <cctype>
 #include <filesystem>
 
@@ -11,8 +10,6 @@
 #include "lab/base/files.h"
 #include "lab/base/json_text.h"
 #include "lab/request/run_file.h"
-#include "lab/results/picture_text.h"
-#include "pipeline/image/image_io.h"
 
 namespace hwsim::lab {
 namespace {
@@ -25,42 +22,10 @@ std::string host_text() {
   return fmt::format("{} {} {}", names.sysname, names.release, names.machine);
 }
 
-float largest(const pipeline::Image& values) {
-  float result = 0.0f;
-  for (const glm::vec4& pixel : values.pixels) result = std::max(result, pixel.x);
-  return result;
-}
-
-void write_images(const std::string& folder, const PointResult& point, const ReferenceImage* reference) {
-  const pipeline::Emulation& emulation = *point.emulation;
-  pipeline::write_image(emulation.color, folder + "/color.png");
-  pipeline::write_image(emulation.color, folder + "/color.exr");
-  const float hottest = std::max(1.0f, largest(emulation.shading_heat));
-  pipeline::write_image(with_scale(heat_picture(emulation.shading_heat, hottest),
-                                   static_cast<double>(hottest), "shader invocations a pixel"),
-                        folder + "/heat_shading.png");
-  if (!reference) return;
-  pipeline::write_image(reference->image, folder + "/reference.png");
-  pipeline::write_image(reference->image, folder + "/reference.exr");
-  pipeline::write_image(heat_picture(point.flip_map, 1.0f), folder + "/flip.png");
-  pipeline::write_image(point.flip_map, folder + "/flip.exr");
-}
-
 }  // namespace
 
-pipeline::Image heat_picture(const pipeline::Image& values, float full_scale) {
-  pipeline::Image picture(values.width, values.height);
-  for (size_t i = 0; i < values.pixels.size(); ++i) {
-    // The map's colors are meant as displayed; the PNG writer encodes.
-    const glm::vec3 shown = pipeline::magma(values.pixels[i].x / full_scale);
-    picture.pixels[i] = glm::vec4(pipeline::linear_from_srgb(shown.x), pipeline::linear_from_srgb(shown.y),
-                                  pipeline::linear_from_srgb(shown.z), 1.0f);
-  }
-  return picture;
-}
-
 void write_point_files(const std::string& folder, const PointResult& point, const RunPlan& plan,
-                       const std::string& scene_name, const ReferenceImage* reference) {
+                       const std::string& scene_name) {
   std::filesystem::create_directories(folder);
   write_file(folder + "/result.json", json_text(to_json(make_result(point, plan, scene_name))));
   write_file(folder + "/passes.csv", to_csv(wide_pass_table(point)));
@@ -68,7 +33,6 @@ void write_point_files(const std::string& folder, const PointResult& point, cons
   write_file(folder + "/trace.json", trace_event_json(point));
   write_file(folder + "/run.toml", run_file_text(plan, *point.technique, "gpu.toml"));
   write_file(folder + "/gpu.toml", show(*point.gpu, true));
-  if (plan.images) write_images(folder, point, reference);
 }
 
 std::string point_folder(const PointResult& point) {

@@ -7,10 +7,10 @@
 
 namespace hwsim::lab {
 
-/// Everything that belongs to one point: result.json, tables, trace, images, and a run.toml with its
-/// gpu.toml.
+/// Everything that belongs to one point but its pictures (picture_writer.h): result.json, tables, trace, and a
+/// run.toml with its gpu.toml.
 void write_point_files(const std::string& folder, const PointResult& point, const RunPlan& plan,
-                       const std::string& scene_name, const ReferenceImage* reference);
+                       const std::string& scene_name);
 
 struct ManifestInput {
   std::vector<std::string> arguments;  ///< words of the command line, where there is one
@@ -30,8 +30,5 @@ std::string manifest_schema_json();
 /// "msaa4x@gtx980": a point's folder in a run of several, without characters that file systems or shells
 /// mind.
 std::string point_folder(const PointResult& point);
-
-/// Magma on values divided by `full_scale`, as a picture to look at.
-pipeline::Image heat_picture(const pipeline::Image& values, float full_scale);
 
 }  // namespace hwsim::lab

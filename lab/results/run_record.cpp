@@ -6,15 +6,16 @@
 namespace hwsim::lab {
 
 RunRecord::RunRecord(const OutPlace& place, Subject subject)
-    : subject_(std::move(subject)), directory_(place, subject_.id_source) {}
+    : subject_(std::move(subject)), directory_(place, subject_.id_source), pictures_(subject_.jobs) {}
 
 void RunRecord::begin(const RunContext& run) { scene_ = run.scene; }
 
 void RunRecord::point(const PointResult& point, const RunContext& run) {
   const bool alone = run.plan.techniques.size() * run.plan.gpus.size() == 1;
   const bool in_front = alone && subject_.layout == Layout::automatic;
-  write_point_files(in_front ? directory_.partial().string() : directory_.path(point_folder(point)), point,
-                    run.plan, run.scene.name, run.reference);
+  const std::string folder = in_front ? directory_.partial().string() : directory_.path(point_folder(point));
+  write_point_files(folder, point, run.plan, run.scene.name);
+  if (run.plan.images) pictures_.write(folder, point, run.reference);
   if (point.from_cache) return;
   fragments_ += shader_invocations(point.emulation->trace);
   emulation_s_ += point.emulation->wall_s;
@@ -35,6 +36,7 @@ nlohmann::ordered_json RunRecord::manifest(const std::string& state) const {
 }
 
 std::string RunRecord::commit(const std::string& log) {
+  pictures_.finish();
   write_file(directory_.path("manifest.json"), json_text(manifest("done")));
   write_file(directory_.path("log.txt"), log);
   directory_.commit();

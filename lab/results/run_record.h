@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lab/point/run_sink.h"
+#include "lab/results/picture_writer.h"
 #include "lab/results/run_directory.h"
 #include "lab/results/run_files.h"
 
@@ -24,12 +25,15 @@ class RunRecord : public RunSink {
     std::string id_source;               ///< from which a folder that is not named gets its id
     std::vector<std::string> arguments;  ///< the command line's, where there is one
     Layout layout = Layout::automatic;
+    int jobs = 1;  ///< threads: with more than one, pictures are written beside what comes next
   };
 
   /// Throws InputError as RunDirectory does.
   RunRecord(const OutPlace& place, Subject subject);
 
   void begin(const RunContext& run) override;
+  /// Throws InputError where files cannot be written: pictures of this point or an earlier one, or commit()
+  /// does.
   void point(const PointResult& point, const RunContext& run) override;
 
   /// A place in the folder for one more file.
@@ -40,13 +44,14 @@ class RunRecord : public RunSink {
   nlohmann::ordered_json manifest(const std::string& state) const;
   double wall_s() const;
 
-  /// Writes the manifest and the log, and puts the folder in its place, which is returned.
+  /// Waits for the pictures, writes the manifest and the log, and puts the folder in its place, which is returned.
   std::string commit(const std::string& log);
 
  private:
   Subject subject_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   RunDirectory directory_;
+  PictureWriter pictures_;
   std::optional<SceneSummary> scene_;
   std::uint64_t fragments_ = 0;
   double emulation_s_ = 0.0;

@@ -98,7 +98,7 @@ class SweepRunner {
   void run(const PlannedPoint& planned) {
     if (!is_quick(planned)) batch_.write();  // or a kill in its minutes would take results with it
     try {
-      Simulator simulator(*planned.plan, *planned.scene, nullptr, session_.traces());
+      Simulator simulator(*planned.plan, *planned.scene, nullptr, session_.traces(), session_.jobs());
       batch_.add(planned.id, simulator.run(*planned.technique, planned.gpu, nullptr));
     } catch (const InputError& error) {
       if (error.diagnostics().front().code == "U021") throw;  // the database itself

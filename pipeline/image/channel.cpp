@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/image/rows.h"
+
 namespace hwsim::pipeline {
 namespace {
 
@@ -13,29 +15,30 @@ void accumulate(float* out, const float* in, float tap, int count) {
 
 }  // namespace
 
-Channel filter_rows(const Channel& in, std::span<const float> taps) {
+Channel filter_rows(const Channel& in, std::span<const float> taps, int jobs) {
   Channel out(in.width, in.height);
   const int radius = static_cast<int>(taps.size()) / 2;
-  std::vector<float> padded(static_cast<std::size_t>(in.width + 2 * radius));
-  for (int y = 0; y < in.height; ++y) {
+  for_rows(in.height, jobs, [&](int y) {
+    std::vector<float> padded(static_cast<std::size_t>(in.width + 2 * radius));
     const float* row = in.row(y);
     std::fill_n(padded.begin(), radius, row[0]);
     std::copy_n(row, in.width, padded.begin() + radius);
     std::fill_n(padded.begin() + radius + in.width, radius, row[in.width - 1]);
     for (std::size_t k = 0; k < taps.size(); ++k)
       accumulate(out.row(y), padded.data() + k, taps[k], in.width);
-  }
+  });
   return out;
 }
 
-Channel filter_columns(const Channel& in, std::span<const float> taps) {
+Channel filter_columns(const Channel& in, std::span<const float> taps, int jobs) {
   Channel out(in.width, in.height);
   const int radius = static_cast<int>(taps.size()) / 2;
-  for (int y = 0; y < in.height; ++y)
+  for_rows(in.height, jobs, [&](int y) {
     for (int k = 0; k < static_cast<int>(taps.size()); ++k) {
       const int from = std::clamp(y + k - radius, 0, in.height - 1);
       accumulate(out.row(y), in.row(from), taps[static_cast<std::size_t>(k)], in.width);
     }
+  });
   return out;
 }
 

@@ -20,8 +20,8 @@ struct Channel {
 };
 
 /// Correlation with an odd number of taps along rows or columns; the border's values are repeated outside.
-Channel filter_rows(const Channel& in, std::span<const float> taps);
-Channel filter_columns(const Channel& in, std::span<const float> taps);
+Channel filter_rows(const Channel& in, std::span<const float> taps, int jobs = 1);
+Channel filter_columns(const Channel& in, std::span<const float> taps, int jobs = 1);
 
 /// 2 radius + 1 taps exp(-x^2 / (2 sigma_px^2)) that sum to 1.
 std::vector<float> gaussian_taps(double sigma_px, int radius_px);

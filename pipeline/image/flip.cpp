@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/image/rows.h"
+
 namespace hwsim::pipeline {
 namespace {
 
@@ -29,15 +31,17 @@ glm::vec3 linear_from_xyz(glm::vec3 c) {
 using Channels = std::array<Channel, 3>;
 
 // Y, Cx, Cz: linear in XYZ, so that filtering commutes with it.
-Channels opponent_channels(const Image& image) {
+Channels opponent_channels(const Image& image, int jobs) {
   Channels channels = {Channel(image.width, image.height), Channel(image.width, image.height),
                        Channel(image.width, image.height)};
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    const glm::vec3 t = xyz_from_linear(glm::vec3(image.pixels[i])) / kWhite;
-    channels[0].values[i] = 116.0f * t.y - 16.0f;
-    channels[1].values[i] = 500.0f * (t.x - t.y);
-    channels[2].values[i] = 200.0f * (t.y - t.z);
-  }
+  for_rows(image.height, jobs, [&](int y) {
+    for (int x = 0; x < image.width; ++x) {
+      const glm::vec3 t = xyz_from_linear(glm::vec3(image.at(x, y))) / kWhite;
+      channels[0].row(y)[x] = 116.0f * t.y - 16.0f;
+      channels[1].row(y)[x] = 500.0f * (t.x - t.y);
+      channels[2].row(y)[x] = 200.0f * (t.y - t.z);
+    }
+  });
   return channels;
 }
 
@@ -58,9 +62,9 @@ double sigma_px(SensitivityTerm term) {
 // Every channel's filter has the radius of the widest Gaussian, b = 0.04, at three deviations.
 int filter_radius_px() { return static_cast<int>(std::ceil(3.0 * sigma_px({1.0, 0.04}))); }
 
-Channel filtered(const Channel& in, SensitivityTerm term) {
+Channel filtered(const Channel& in, SensitivityTerm term, int jobs) {
   const std::vector<float> taps = gaussian_taps(sigma_px(term), filter_radius_px());
-  return filter_columns(filter_rows(in, taps), taps);
+  return filter_columns(filter_rows(in, taps, jobs), taps, jobs);
 }
 
 // Sum of a term's weights over the window, the share it has in the normalized sum of two terms.
@@ -71,11 +75,12 @@ double mass(SensitivityTerm term) {
   return term.a * std::sqrt(std::numbers::pi / term.b) * line * line;
 }
 
-Channels filtered_by_sensitivity(const Channels& in) {
+Channels filtered_by_sensitivity(const Channels& in, int jobs) {
   constexpr SensitivityTerm luma{1.0, 0.0047}, red_green{1.0, 0.0053}, blue_1{34.1, 0.04},
       blue_2{13.5, 0.025};
-  Channels out = {filtered(in[0], luma), filtered(in[1], red_green), filtered(in[2], blue_1)};
-  const Channel second = filtered(in[2], blue_2);
+  Channels out = {filtered(in[0], luma, jobs), filtered(in[1], red_green, jobs),
+                  filtered(in[2], blue_1, jobs)};
+  const Channel second = filtered(in[2], blue_2, jobs);
   const auto share = static_cast<float>(mass(blue_1) / (mass(blue_1) + mass(blue_2)));
   for (std::size_t i = 0; i < second.values.size(); ++i)
     out[2].values[i] = share * out[2].values[i] + (1.0f - share) * second.values[i];
@@ -124,54 +129,62 @@ std::vector<float> derivative_taps(int order, double sigma, int radius) {
   return out;
 }
 
-struct Features {
-  Channel edge, point;
-};
-
 void to_magnitude(Channel& x, const Channel& y) {
   for (std::size_t i = 0; i < x.values.size(); ++i)
     x.values[i] = std::sqrt(x.values[i] * x.values[i] + y.values[i] * y.values[i]);
 }
 
-Features features(const Channel& luma) {
+/// What the eye sees of the image, in Hunt-adjusted CIELab.
+void to_hunt_lab(Channels& opponent, int jobs) {
+  for_rows(opponent[0].height, jobs, [&](int y) {
+    for (int x = 0; x < opponent[0].width; ++x) {
+      const glm::vec3 lab = hunt_lab_from_linear(
+          linear_from_opponent(opponent[0].row(y)[x], opponent[1].row(y)[x], opponent[2].row(y)[x]));
+      for (std::size_t c = 0; c < opponent.size(); ++c)
+        opponent[c].row(y)[x] = lab[static_cast<glm::length_t>(c)];
+    }
+  });
+}
+
+// Y lies in [0,1] instead of [-16,100]: the filters have no response to the shift, only to the scale.
+float feature_error(float edge_difference, float point_difference) {
+  const float larger = std::max(std::abs(edge_difference), std::abs(point_difference)) / 116.0f;
+  return std::min(1.0f, std::pow(larger / std::numbers::sqrt2_v<float>, kFeatureExponent));
+}
+
+}  // namespace
+
+FlipSide flip_side(const Image& image, int jobs) {
   const double sigma = 0.5 * kFeatureWidthDegrees * kFlipPixelsPerDegree;
   const int radius = static_cast<int>(std::ceil(3.0 * sigma));
   const std::vector<float> smooth = gaussian_taps(sigma, radius);
   const std::vector<float> first = derivative_taps(1, sigma, radius),
                            second = derivative_taps(2, sigma, radius);
-  const Channel smooth_rows = filter_rows(luma, smooth);
-  Features found{filter_columns(filter_rows(luma, first), smooth),
-                 filter_columns(filter_rows(luma, second), smooth)};
-  to_magnitude(found.edge, filter_columns(smooth_rows, first));
-  to_magnitude(found.point, filter_columns(smooth_rows, second));
-  return found;
+  const Channels opponent = opponent_channels(image, jobs);
+  const Channel& luma = opponent[0];
+  const Channel smooth_rows = filter_rows(luma, smooth, jobs);
+  FlipSide side{filter_columns(filter_rows(luma, first, jobs), smooth, jobs),
+                filter_columns(filter_rows(luma, second, jobs), smooth, jobs),
+                filtered_by_sensitivity(opponent, jobs)};
+  to_magnitude(side.edge, filter_columns(smooth_rows, first, jobs));
+  to_magnitude(side.point, filter_columns(smooth_rows, second, jobs));
+  to_hunt_lab(side.lab, jobs);
+  return side;
 }
 
-// Y lies in [0,1] instead of [-16,100]: the filters have no response to the shift, only to the scale.
-Channel feature_error(const Channel& test, const Channel& reference) {
-  const Features t = features(test), r = features(reference);
-  Channel error(test.width, test.height);
-  for (std::size_t i = 0; i < error.values.size(); ++i) {
-    const float edge = std::abs(t.edge.values[i] - r.edge.values[i]);
-    const float point = std::abs(t.point.values[i] - r.point.values[i]);
-    const float larger = std::max(edge, point) / 116.0f;
-    error.values[i] = std::min(1.0f, std::pow(larger / std::numbers::sqrt2_v<float>, kFeatureExponent));
-  }
-  return error;
-}
-
-}  // namespace
-
-Channel flip_error(const Image& test, const Image& reference) {
-  const Channels test_channels = opponent_channels(test), reference_channels = opponent_channels(reference);
-  Channel error = feature_error(test_channels[0], reference_channels[0]);
-  const Channels t = filtered_by_sensitivity(test_channels), r = filtered_by_sensitivity(reference_channels);
-  for (std::size_t i = 0; i < error.values.size(); ++i) {
-    const glm::vec3 p = linear_from_opponent(t[0].values[i], t[1].values[i], t[2].values[i]);
-    const glm::vec3 q = linear_from_opponent(r[0].values[i], r[1].values[i], r[2].values[i]);
-    const float color = remapped(color_distance(hunt_lab_from_linear(p), hunt_lab_from_linear(q)));
-    error.values[i] = std::pow(color, 1.0f - error.values[i]);
-  }
+Channel flip_error(const FlipSide& test, const FlipSide& reference, int jobs) {
+  Channel error(test.edge.width, test.edge.height);
+  for_rows(error.height, jobs, [&](int y) {
+    const auto lab = [y](const FlipSide& side, int x) {
+      return glm::vec3(side.lab[0].row(y)[x], side.lab[1].row(y)[x], side.lab[2].row(y)[x]);
+    };
+    for (int x = 0; x < error.width; ++x) {
+      const float features = feature_error(test.edge.row(y)[x] - reference.edge.row(y)[x],
+                                           test.point.row(y)[x] - reference.point.row(y)[x]);
+      const float color = remapped(color_distance(lab(test, x), lab(reference, x)));
+      error.row(y)[x] = std::pow(color, 1.0f - features);
+    }
+  });
   return error;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 // FLIP: the difference that a viewer sees when two pictures are flipped.
+#include <array>
+
 #include "pipeline/image/channel.h"
 #include "pipeline/image/image.h"
 
@@ -8,8 +10,14 @@ namespace hwsim::pipeline {
 /// A viewer 0.7 m from a monitor 0.7 m and 3840 pixels wide, the setting of the FLIP paper.
 inline constexpr double kFlipPixelsPerDegree = 67.0206432766;
 
-/// LDR FLIP (Andersson et al. 2020), the error of each pixel in [0,1]. Linear images of the same size with
-/// values in [0,1].
-Channel flip_error(const Image& test, const Image& reference);
+/// What FLIP compares of an image. Linear, values in [0,1].
+struct FlipSide {
+  Channel edge, point;
+  std::array<Channel, 3> lab;  ///< filtered as the eye does, chroma scaled by lightness
+};
+FlipSide flip_side(const Image& image, int jobs = 1);
+
+/// LDR FLIP (Andersson et al. 2020), the error of each pixel in [0,1]. Images of the same size.
+Channel flip_error(const FlipSide& test, const FlipSide& reference, int jobs = 1);
 
 }  // namespace hwsim::pipeline

@@ -4,13 +4,15 @@
 #include <cmath>
 #include <string>
 
+#include "pipeline/image/known_srgb.h"
+
 namespace hwsim::pipeline {
 namespace {
 
 // Frames hold eight bits: closer than half a code is the same color.
-bool is_near(const glm::vec4& pixel, const glm::vec3& color) {
+bool is_near(KnownSrgb& encoded, const glm::vec4& pixel, const glm::vec3& color) {
   for (int i = 0; i < 3; ++i)
-    if (std::abs(srgb_from_linear(pixel[i]) - srgb_from_linear(color[i])) > 1.0f / 255.0f) return false;
+    if (std::abs(encoded(pixel[i]) - encoded(color[i])) > 1.0f / 255.0f) return false;
   return true;
 }
 
@@ -28,12 +30,14 @@ std::string percent(double share) { return std::to_string(std::lround(share * 10
 }  // namespace
 
 FrameLook look_at(const Image& color, const glm::vec3& background) {
+  KnownSrgb encoded;
+  const float near_white = linear_from_srgb(254.5f / 255.0f), near_black = linear_from_srgb(1.5f / 255.0f);
   std::size_t drawn = 0, white = 0, black = 0;
   for (const glm::vec4& p : color.pixels) {
-    if (is_near(p, background)) continue;
+    if (is_near(encoded, p, background)) continue;
     ++drawn;
-    white += std::min({p.x, p.y, p.z}) > linear_from_srgb(254.5f / 255.0f);
-    black += std::max({p.x, p.y, p.z}) < linear_from_srgb(1.5f / 255.0f);
+    white += std::min({p.x, p.y, p.z}) > near_white;
+    black += std::max({p.x, p.y, p.z}) < near_black;
   }
   const auto share = [](std::size_t part, std::size_t whole) {
     return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);

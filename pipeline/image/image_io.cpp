@@ -4,13 +4,17 @@
 #include <array>
 #include <cmath>
 #include <new>
+#include <optional>
 #include <string_view>
 
 #include "hwsim/base/diagnostics.h"
 #include "pipeline/base/file_io.h"
+#include "pipeline/image/exr_file.h"
 #include "pipeline/image/image_bytes.h"
 #include "pipeline/image/image_signature.h"
+#include "pipeline/image/known_srgb.h"
 #include "pipeline/image/module_loader.h"
+#include "pipeline/image/png_file.h"
 
 namespace hwsim::pipeline {
 namespace {
@@ -90,43 +94,17 @@ template <class Target>
 Target decode(std::span<const std::uint8_t> bytes, const std::string& what, bool as_float) {
   Target target;
   std::array<char, 512> error{};
-  const HwsimImageOutput output{&target, &allocate_in<Target>, nullptr, error.data(), error.size()};
+  const HwsimImageOutput output{&target, &allocate_in<Target>, error.data(), error.size()};
   const int status = image_module().decode(bytes.data(), bytes.size(), as_float ? 1 : 0, &output);
   if (status != kHwsimImageOk) report(status, error.data(), what);
   return target;
-}
-
-void append_bytes(void* user, const void* bytes, std::size_t count) {
-  const auto* first = static_cast<const std::uint8_t*>(bytes);
-  static_cast<std::vector<std::uint8_t>*>(user)->assign(first, first + count);
-}
-
-std::vector<std::uint8_t> encode(const char* format, const void* rgb, const Image& image,
-                                 const std::string& path) {
-  std::vector<std::uint8_t> file;
-  std::array<char, 512> error{};
-  const HwsimImageOutput output{&file, nullptr, &append_bytes, error.data(), error.size()};
-  const int status = image_module().encode(format, rgb, image.width, image.height, &output);
-  if (status == kHwsimImageNoMemory) throw std::bad_alloc();
-  if (status != kHwsimImageOk)
-    fail("I005", std::string("cannot encode the image: ") + error.data(), path,
-         "write it in the other format, .png or .exr");
-  return file;
-}
-
-std::vector<std::uint8_t> encode_png(const Image& image, const std::string& path) {
-  std::vector<std::uint8_t> rgb;
-  rgb.reserve(image.pixels.size() * 3);
-  for (const glm::vec4& pixel : image.pixels)
-    for (int c = 0; c < 3; ++c)
-      rgb.push_back(static_cast<std::uint8_t>(std::min(srgb_from_linear(pixel[c]), 1.0f) * 255.0f + 0.5f));
-  return encode("png", rgb.data(), image, path);
 }
 
 }  // namespace
 
 RawImage decode_image(std::span<const std::uint8_t> bytes, const std::string& what) {
   check_format(bytes, what, false);
+  if (std::optional<RawImage> plain = decode_plain_png(bytes)) return std::move(*plain);
   return decode<RawTarget>(bytes, what, false).image;
 }
 
@@ -141,14 +119,25 @@ Image read_image(std::span<const std::uint8_t> bytes, const std::string& what) {
   return image;
 }
 
-// Finite values beyond the half format saturate: a bright pixel must not turn into an infinite one.
-std::vector<std::uint8_t> encode_exr(const Image& image, const std::string& what) {
-  std::vector<float> rgb;
-  rgb.reserve(image.pixels.size() * 3);
+std::vector<std::uint8_t> encode_png(const Image& image) {
+  KnownSrgb encoded;
+  std::vector<std::uint8_t> rgb(image.pixels.size() * 3);
+  std::uint8_t* next = rgb.data();
   for (const glm::vec4& pixel : image.pixels)
     for (int c = 0; c < 3; ++c)
-      rgb.push_back(std::isfinite(pixel[c]) ? std::clamp(pixel[c], -kLargestHalf, kLargestHalf) : pixel[c]);
-  return encode("exr", rgb.data(), image, what);
+      *next++ = static_cast<std::uint8_t>(std::min(encoded(pixel[c]), 1.0f) * 255.0f + 0.5f);
+  return encode_png(image.width, image.height, rgb);
+}
+
+// Finite values beyond the half format saturate: a bright pixel must not turn into an infinite one.
+std::vector<std::uint8_t> encode_exr(const Image& image) {
+  std::vector<std::uint16_t> rgb(image.pixels.size() * 3);
+  std::uint16_t* next = rgb.data();
+  for (const glm::vec4& pixel : image.pixels)
+    for (int c = 0; c < 3; ++c)
+      *next++ = half_from_float(std::isfinite(pixel[c]) ? std::clamp(pixel[c], -kLargestHalf, kLargestHalf)
+                                                        : pixel[c]);
+  return encode_exr_halves(image.width, image.height, rgb);
 }
 
 void write_image(const Image& image, const std::string& path) {
@@ -157,7 +146,7 @@ void write_image(const Image& image, const std::string& path) {
   if (!png && !exr) fail("I006", "unknown image format", path, "name the file .png or .exr");
   if (image.width <= 0 || image.height <= 0)
     fail("I005", "the image is empty", path, "write at least one pixel");
-  write_file_atomically(path, "I005", png ? encode_png(image, path) : encode_exr(image, path));
+  write_file_atomically(path, "I005", png ? encode_png(image) : encode_exr(image));
 }
 
 }  // namespace hwsim::pipeline

@@ -1,6 +1,7 @@
 #pragma once
-// Image files by OpenImageIO. It takes 0.26 s to load into a process, so it sits in a module of its own
-// (libhwsim_image_io.so), opened at the first call; nothing else of the project includes or links it.
+// Image files. What is no plain PNG is decoded by OpenImageIO. It takes 0.26 s to load into a process, so it
+// sits in a module of its own (libhwsim_image_io.so), opened when it is first needed; nothing else of the
+// project includes or links it.
 #include <cstdint>
 #include <span>
 #include <string>

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "pipeline/image/deflate.h"
+
 namespace hwsim::pipeline {
 namespace {
 
@@ -21,24 +23,6 @@ std::uint32_t big_endian_32(std::span<const std::uint8_t> bytes, std::size_t at)
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < 4; ++i) value = value << 8 | bytes[at + i];
   return value;
-}
-
-// ISO 3309, as PNG's annex D gives it: reflected, polynomial 0xEDB88320.
-constexpr std::array<std::uint32_t, 256> crc_table() {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t n = 0; n < 256; ++n) {
-    std::uint32_t c = n;
-    for (int bit = 0; bit < 8; ++bit) c = (c >> 1) ^ ((c & 1u) ? 0xEDB88320u : 0u);
-    table[n] = c;
-  }
-  return table;
-}
-
-std::uint32_t crc32(std::span<const std::uint8_t> bytes) {
-  static constexpr std::array<std::uint32_t, 256> table = crc_table();
-  std::uint32_t crc = 0xFFFFFFFFu;
-  for (const std::uint8_t byte : bytes) crc = table[(crc ^ byte) & 0xFFu] ^ (crc >> 8);
-  return ~crc;
 }
 
 // From the start-of-frame segment, as ISO 10918-1 section B.2.2 gives it.
@@ -111,7 +95,7 @@ bool png_is_intact(std::span<const std::uint8_t> bytes) {
     if (length > bytes.size() - at - kFraming) return false;
     const auto type_and_data = bytes.subspan(at + 4, 4 + length);
     const bool critical = (type_and_data[0] & 0x20) == 0;
-    if (critical && crc32(type_and_data) != big_endian_32(bytes, at + 8 + length)) return false;
+    if (critical && crc32_of(type_and_data) != big_endian_32(bytes, at + 8 + length)) return false;
     constexpr std::array<std::uint8_t, 4> end = {'I', 'E', 'N', 'D'};
     if (starts_with(type_and_data, end)) return true;
     at += kFraming + length;

@@ -4,14 +4,18 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "pipeline/image/channel.h"
 #include "pipeline/image/flip.h"
+#include "pipeline/image/known_srgb.h"
 
 namespace hwsim::pipeline {
 namespace {
 
 constexpr double kInfinitePsnrDb = 999.0;
+constexpr std::size_t kColors = 3;
 
 // What a display shows: NaN and negative values are black, as write_image stores them.
 Image displayed(const Image& image) {
@@ -24,27 +28,30 @@ Image displayed(const Image& image) {
   return out;
 }
 
-Image srgb_encoded(Image image) {
-  for (glm::vec4& pixel : image.pixels)
-    for (int c = 0; c < 3; ++c) pixel[c] = srgb_from_linear(pixel[c]);
-  return image;
+/// Red, green and blue of each pixel.
+std::vector<float> srgb_encoded(const Image& image) {
+  KnownSrgb encoded;
+  std::vector<float> out;
+  out.reserve(image.pixels.size() * kColors);
+  for (const glm::vec4& pixel : image.pixels)
+    for (glm::length_t c = 0; c < 3; ++c) out.push_back(encoded(pixel[c]));
+  return out;
 }
 
-double mean_squared_error(const Image& test, const Image& reference) {
+double mean_squared_error(const std::vector<float>& test, const std::vector<float>& reference) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < test.pixels.size(); ++i)
-    for (int c = 0; c < 3; ++c) {
-      const double difference =
-          static_cast<double>(test.pixels[i][c]) - static_cast<double>(reference.pixels[i][c]);
-      sum += difference * difference;
-    }
-  return sum / (3.0 * static_cast<double>(test.pixels.size()));
+  for (std::size_t i = 0; i < test.size(); ++i) {
+    const double difference = static_cast<double>(test[i]) - static_cast<double>(reference[i]);
+    sum += difference * difference;
+  }
+  return sum / static_cast<double>(test.size());
 }
 
-Channel luma_channel(const Image& image) {
+Channel luma_channel(const Image& image, const std::vector<float>& encoded) {
   Channel channel(image.width, image.height);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i)
-    channel.values[i] = 0.299f * image.pixels[i].x + 0.587f * image.pixels[i].y + 0.114f * image.pixels[i].z;
+  for (std::size_t i = 0; i < channel.values.size(); ++i)
+    channel.values[i] =
+        0.299f * encoded[kColors * i] + 0.587f * encoded[kColors * i + 1] + 0.114f * encoded[kColors * i + 2];
   return channel;
 }
 
@@ -56,24 +63,34 @@ Channel product(const Channel& a, const Channel& b) {
 
 constexpr int kSsimRadiusPx = 5;
 
+Channel blurred(const Channel& in, int jobs) {
+  const std::vector<float> taps = gaussian_taps(1.5, kSsimRadiusPx);
+  return filter_columns(filter_rows(in, taps, jobs), taps, jobs);
+}
+
+struct SsimSide {
+  Channel luma, mean, square;
+  SsimSide(Channel its_luma, int jobs)
+      : luma(std::move(its_luma)), mean(blurred(luma, jobs)), square(blurred(product(luma, luma), jobs)) {}
+};
+
 // Wang et al. 2004 average the windows that lie inside the image; images without one take all, borders
 // repeated.
-double structural_similarity(const Channel& a, const Channel& b) {
-  const std::vector<float> taps = gaussian_taps(1.5, kSsimRadiusPx);
-  const auto blur = [&](const Channel& in) { return filter_columns(filter_rows(in, taps), taps); };
-  const Channel mean_a = blur(a), mean_b = blur(b), aa = blur(product(a, a)), bb = blur(product(b, b)),
-                ab = blur(product(a, b));
-  const bool has_inside = std::min(a.width, a.height) > 2 * kSsimRadiusPx;
+double structural_similarity(const SsimSide& a, const SsimSide& b, int jobs) {
+  const Channel both = blurred(product(a.luma, b.luma), jobs);
+  const int width = both.width, height = both.height;
+  const bool has_inside = std::min(width, height) > 2 * kSsimRadiusPx;
   const int margin = has_inside ? kSsimRadiusPx : 0;
   constexpr double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
   double sum = 0.0;
-  for (int y = margin; y < a.height - margin; ++y)
-    for (int x = margin; x < a.width - margin; ++x) {
-      const double ma = mean_a.row(y)[x], mb = mean_b.row(y)[x];
-      const double va = aa.row(y)[x] - ma * ma, vb = bb.row(y)[x] - mb * mb, cov = ab.row(y)[x] - ma * mb;
+  for (int y = margin; y < height - margin; ++y)
+    for (int x = margin; x < width - margin; ++x) {
+      const double ma = a.mean.row(y)[x], mb = b.mean.row(y)[x];
+      const double va = a.square.row(y)[x] - ma * ma, vb = b.square.row(y)[x] - mb * mb,
+                   cov = both.row(y)[x] - ma * mb;
       sum += (2.0 * ma * mb + c1) * (2.0 * cov + c2) / ((ma * ma + mb * mb + c1) * (va + vb + c2));
     }
-  return sum / (static_cast<double>(a.width - 2 * margin) * static_cast<double>(a.height - 2 * margin));
+  return sum / (static_cast<double>(width - 2 * margin) * static_cast<double>(height - 2 * margin));
 }
 
 // The smallest value that at least `share` of all values do not exceed.
@@ -92,30 +109,54 @@ void add_flip(ImageError& error, Channel flip) {
   error.flip_p99 = quantile(flip.values, 0.99);
 }
 
-std::string size_text(const Image& image) {
-  return std::to_string(image.width) + " x " + std::to_string(image.height);
+std::string size_text(int width, int height) {
+  return std::to_string(width) + " x " + std::to_string(height);
 }
 
 }  // namespace
 
-ImageError compare(const Image& test, const Image& reference, Image* flip_map) {
-  if (test.width != reference.width || test.height != reference.height)
-    throw std::invalid_argument("image sizes differ: " + size_text(test) + " and " + size_text(reference));
-  if (test.pixels.empty()) throw std::invalid_argument("the images are empty");
-  const Image shown_test = displayed(test), shown_reference = displayed(reference);
-  const Image encoded_test = srgb_encoded(shown_test), encoded_reference = srgb_encoded(shown_reference);
+struct ComparedReference::Sides {
+  int width, height;
+  std::vector<float> encoded;
+  SsimSide ssim;
+  FlipSide flip;
+
+  Sides(const Image& image, int jobs) : Sides(image, displayed(image), jobs) {}
+  Sides(const Image& image, const Image& shown, int jobs)
+      : width(image.width),
+        height(image.height),
+        encoded(srgb_encoded(shown)),
+        ssim(luma_channel(shown, encoded), jobs),
+        flip(flip_side(shown, jobs)) {}
+};
+
+ComparedReference::ComparedReference(const Image& reference, int jobs)
+    : sides_(std::make_unique<const Sides>(reference, jobs)), jobs_(jobs) {}
+ComparedReference::~ComparedReference() = default;
+ComparedReference::ComparedReference(ComparedReference&&) noexcept = default;
+
+ImageError ComparedReference::error_of(const Image& image, Image* flip_map) const {
+  if (image.width != sides_->width || image.height != sides_->height)
+    throw std::invalid_argument("image sizes differ: " + size_text(image.width, image.height) + " and " +
+                                size_text(sides_->width, sides_->height));
+  if (image.pixels.empty()) throw std::invalid_argument("the images are empty");
+  const Sides test(image, jobs_);
   ImageError error;
-  const double squared = mean_squared_error(encoded_test, encoded_reference);
+  const double squared = mean_squared_error(test.encoded, sides_->encoded);
   error.rmse = std::sqrt(squared);
   error.psnr_db = squared > 0.0 ? std::min(kInfinitePsnrDb, -10.0 * std::log10(squared)) : kInfinitePsnrDb;
-  error.ssim = structural_similarity(luma_channel(encoded_test), luma_channel(encoded_reference));
-  Channel flip = flip_error(shown_test, shown_reference);
+  error.ssim = structural_similarity(test.ssim, sides_->ssim, jobs_);
+  Channel flip = flip_error(test.flip, sides_->flip, jobs_);
   if (flip_map) {
-    *flip_map = Image(test.width, test.height, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+    *flip_map = Image(image.width, image.height, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
     for (std::size_t i = 0; i < flip.values.size(); ++i) flip_map->pixels[i].x = flip.values[i];
   }
   add_flip(error, std::move(flip));
   return error;
+}
+
+ImageError compare(const Image& test, const Image& reference, Image* flip_map) {
+  return ComparedReference(reference).error_of(test, flip_map);
 }
 
 }  // namespace hwsim::pipeline

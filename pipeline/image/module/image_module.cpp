@@ -153,28 +153,6 @@ int decode(const std::uint8_t* bytes, std::size_t byte_count, int as_float, cons
   return done ? kHwsimImageOk : fail(output, kHwsimImageDamaged, input->geterror());
 }
 
-int encode(const std::string& format, const void* rgb, int width, int height,
-           const HwsimImageOutput& output) {
-  const bool png = format == "png";
-  std::vector<unsigned char> file;
-  {
-    OIIO::Filesystem::IOVecOutput writer(file);
-    const auto image = OIIO::ImageOutput::create(png ? "png" : "openexr");
-    if (!image) return fail(output, kHwsimImageFailed, "OpenImageIO lacks its plug-in for " + format);
-    OIIO::ImageSpec spec(width, height, 3, png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::HALF);
-    spec.attribute("oiio:ColorSpace", png ? "sRGB" : "Linear");
-    spec.attribute("compression", "zip");
-    // Otherwise OpenEXR files get the time of writing: the same image must give the same bytes.
-    spec.attribute("DateTime", "1970:01:01 00:00:00");
-    const bool written = image->set_ioproxy(&writer) && image->open(png ? "image.png" : "image.exr", spec) &&
-                         image->write_image(png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT, rgb) &&
-                         image->close();
-    if (!written) return fail(output, kHwsimImageFailed, image->geterror());
-  }
-  output.append(output.user, file.data(), file.size());
-  return kHwsimImageOk;
-}
-
 int decode_guarded(const std::uint8_t* bytes, std::size_t byte_count, int as_float,
                    const HwsimImageOutput* output) {
   try {
@@ -190,23 +168,7 @@ int decode_guarded(const std::uint8_t* bytes, std::size_t byte_count, int as_flo
   }
 }
 
-int encode_guarded(const char* format, const void* rgb, int width, int height,
-                   const HwsimImageOutput* output) {
-  try {
-    return encode(format, rgb, width, height, *output);
-  } catch (const std::bad_alloc&) {
-    return fail(*output, kHwsimImageNoMemory, "not enough memory");
-  } catch (const std::system_error&) {
-    return fail(*output, kHwsimImageNoMemory, "the system gives no further thread");
-  } catch (const std::exception& error) {
-    return fail(*output, kHwsimImageFailed, error.what());
-  } catch (...) {
-    return fail(*output, kHwsimImageFailed, "unknown error");
-  }
-}
-
 }  // namespace
 
 extern "C" __attribute__((visibility("default"))) const HwsimImageModule hwsim_image_module;
-extern "C" const HwsimImageModule hwsim_image_module = {kHwsimImageAbiVersion, decode_guarded,
-                                                        encode_guarded};
+extern "C" const HwsimImageModule hwsim_image_module = {kHwsimImageAbiVersion, decode_guarded};

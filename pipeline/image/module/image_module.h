@@ -7,7 +7,7 @@
 
 extern "C" {
 
-enum { kHwsimImageAbiVersion = 1, kHwsimImageMaxExtentPx = 16384 };
+enum { kHwsimImageAbiVersion = 2, kHwsimImageMaxExtentPx = 16384 };
 
 enum HwsimImageStatus {
   kHwsimImageOk = 0,
@@ -22,8 +22,7 @@ enum HwsimImageStatus {
 struct HwsimImageOutput {
   void* user;
   void* (*allocate)(void* user, int width, int height);  ///< 4 elements a pixel: bytes or floats
-  void (*append)(void* user, const void* bytes, std::size_t byte_count);
-  char* error;  ///< a message, always terminated
+  char* error;                                           ///< a message, always terminated
   std::size_t error_bytes;
 };
 
@@ -31,15 +30,11 @@ struct HwsimImageOutput {
 /// bytes.
 using HwsimImageDecode = int (*)(const std::uint8_t* bytes, std::size_t byte_count, int as_float,
                                  const HwsimImageOutput* output);
-/// `format` "png": `rgb` holds bytes; "exr": floats, stored as halves. The file's bytes go to `append`.
-using HwsimImageEncode = int (*)(const char* format, const void* rgb, int width, int height,
-                                 const HwsimImageOutput* output);
 
 /// What the module exports, under the name "hwsim_image_module".
 struct HwsimImageModule {
   int abi_version;
   HwsimImageDecode decode;
-  HwsimImageEncode encode;
 };
 
 }  // extern "C"
