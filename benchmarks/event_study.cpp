@@ -117,7 +117,7 @@ struct Probe {
 
   /// `pass` reads what it is given; the frame itself stays alive as its last input.
   Events run(void (*shader)(FragmentBatch&, const void*), std::vector<pipeline::ImageId> images,
-             std::vector<pipeline::BufferId> buffers, std::shared_ptr<const void> uniforms, int jobs) {
+             std::vector<pipeline::BufferId> buffers, pipeline::Uniforms uniforms, int jobs) {
     pipeline::FragmentProgram program;
     program.name = "events";
     program.run = shader;

@@ -27,14 +27,14 @@ std::string cache_folder() {
   return ((error ? fs::path(".") : temporary) / "hwsim-cache").string();
 }
 
-std::uint64_t cache_limit_bytes() {
-  const std::string text = variable("HWSIM_CACHE_MIB");
-  if (text.empty()) return kDefaultCacheLimitBytes;
+std::uint64_t bytes_of(const char* name, std::uint64_t otherwise) {
+  const std::string text = variable(name);
+  if (text.empty()) return otherwise;
   std::uint32_t mib = 0;
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, mib);
   if (error != std::errc() || stop != end)
-    fail("U017", "HWSIM_CACHE_MIB is `" + text + "`, must be a whole number of MiB");
+    fail("U017", std::string(name) + " is `" + text + "`, must be a whole number of MiB");
   return std::uint64_t{mib} << 20;
 }
 
@@ -44,7 +44,8 @@ LabOptions options_of_environment() {
   return {.config_folder = variable("HWSIM_CONFIG_DIR"),
           .page_folder = variable("HWSIM_PAGE_DIR"),
           .cache_folder = cache_folder(),
-          .cache_limit_bytes = cache_limit_bytes()};
+          .cache_limit_bytes = bytes_of("HWSIM_CACHE_MIB", kDefaultCacheLimitBytes),
+          .shared_passes_bytes = bytes_of("HWSIM_SHARED_PASSES_MIB", kDefaultSharedPassesBytes)};
 }
 
 }  // namespace hwsim::lab

@@ -165,10 +165,13 @@ Comparison Lab::compare(const Request& request, const std::vector<Variation>& va
   session_->observer().say(
       fmt::format("plan: {}, {} results to compare", request.view.scene, points * plans.size()));
   StageProgress progress(session_->observer(), points * plans.size());
+  std::vector<RunPlan> numbers;
+  for (const RunPlan& plan : plans) numbers.push_back(numbers_only(plan));
+  const SharedFrames shared(numbers, *session_);
   std::vector<LabeledResult> labeled;
   for (std::size_t i = 0; i < plans.size(); ++i) {
     ResultSink sink;
-    session_->run(numbers_only(plans[i]), sink, progress);
+    session_->run(numbers[i], sink, progress);
     const std::string label = i > 0 ? variations[i - 1].label : points == 1 ? "baseline" : "";
     for (Result& result : sink.take().results) {
       std::string name = label_of(result, label, points > 1);

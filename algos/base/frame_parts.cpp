@@ -403,7 +403,7 @@ void add_over_output(FrameGraph& graph, const FrameParts& parts, ImageId output,
 }
 
 Pass& add_frame_compute(FrameGraph& graph, const std::string& name, const ComputeProgram& program,
-                        std::shared_ptr<const void> uniforms) {
+                        pipeline::Uniforms uniforms) {
   Pass& pass = graph.add_pass(name, PassKind::compute);
   pass.compute = &program;
   pass.groups_x = (graph.width() + program.group_width - 1) / program.group_width;
@@ -413,7 +413,7 @@ Pass& add_frame_compute(FrameGraph& graph, const std::string& name, const Comput
 }
 
 Pass& add_full_screen(FrameGraph& graph, const std::string& name, std::vector<ImageId> sampled,
-                      ImageId target, const FragmentProgram& program, std::shared_ptr<const void> uniforms) {
+                      ImageId target, const FragmentProgram& program, pipeline::Uniforms uniforms) {
   Pass& pass = graph.add_pass(name, PassKind::full_screen);
   pass.width = graph.image(target).width;
   pass.height = graph.image(target).height;

@@ -135,14 +135,12 @@ pipeline::MulticastPattern multicast_layers(const FrameRequest& request, int sam
 
 /// A compute pass with an invocation for each pixel of the frame.
 pipeline::Pass& add_frame_compute(pipeline::FrameGraph& graph, const std::string& name,
-                                  const pipeline::ComputeProgram& program,
-                                  std::shared_ptr<const void> uniforms);
+                                  const pipeline::ComputeProgram& program, pipeline::Uniforms uniforms);
 
 /// A pass of `program` over the whole of `target`.
 pipeline::Pass& add_full_screen(pipeline::FrameGraph& graph, const std::string& name,
                                 std::vector<pipeline::ImageId> sampled, pipeline::ImageId target,
-                                const pipeline::FragmentProgram& program,
-                                std::shared_ptr<const void> uniforms);
+                                const pipeline::FragmentProgram& program, pipeline::Uniforms uniforms);
 
 /// The final image: rgba8_srgb, 1x.
 pipeline::ImageId add_output(pipeline::FrameGraph& graph);

@@ -128,7 +128,7 @@ void cover_layers(Pass& pass, const GBuffer& g) {
 }
 
 Pass& add_light_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g, const std::string& name,
-                     std::shared_ptr<const void> uniforms) {
+                     pipeline::Uniforms uniforms) {
   Pass& pass = graph.add_pass(name, PassKind::full_screen);
   cover_layers(pass, g);
   pass.color = {g.lit};
@@ -147,7 +147,7 @@ void select_by_stencil(Pass& pass, const GBuffer& g, std::uint8_t value) {
 }
 
 void add_classify_pass(FrameGraph& graph, const FrameParts& parts, const GBuffer& g,
-                       std::shared_ptr<const void> uniforms) {
+                       pipeline::Uniforms uniforms) {
   Pass& pass = graph.add_pass("classify", PassKind::full_screen);
   cover_layers(pass, g);
   pass.depth = g.depth;

@@ -44,7 +44,9 @@ constexpr ErrorCode kCodes[] = {
      "it "
      "is."},
     {"U017", "bad size of the cache",
-     "HWSIM_CACHE_MIB limits the traces kept on disk, in MiB; 0 keeps none."},
+     "HWSIM_CACHE_MIB limits the traces kept on disk, and HWSIM_SHARED_PASSES_MIB what techniques share of "
+     "their "
+     "passes in memory, in MiB; 0 keeps none."},
     {"U018", "unknown overlay",
      "--overlay and --what-if take a name of `hwsim list overlays`; --overlay also a file that ends in "
      ".toml."},

@@ -6,6 +6,28 @@ std::string point_name(const algos::TechniqueChoice& technique, const GpuConfig&
   return algos::technique_text(technique) + " on " + gpu.id;
 }
 
+SharedFrames::SharedFrames(std::span<const RunPlan> plans, Session& session)
+    : session_(session), active_(!session.shares_frames_) {
+  if (!active_ || plans.empty()) return;
+  SceneView& scene = session.scene(plans.front().view);
+  const RunPlan& first = plans.front();
+  std::vector<TraceStore::WantedFrame> frames;
+  for (const RunPlan& plan : plans) {
+    if (&session.scene(plan.view) != &scene) break;
+    for (const algos::TechniqueChoice& technique : plan.techniques)
+      for (const GpuConfig& gpu : plan.gpus) frames.push_back({&technique, &gpu});
+  }
+  if (frames.size() > 1)
+    session.traces().expect(scene, frames, {first.skip, first.images || first.reference_samples > 0});
+  session.shares_frames_ = true;
+}
+
+SharedFrames::~SharedFrames() {
+  if (!active_) return;
+  session_.traces().expect_nothing();
+  session_.shares_frames_ = false;
+}
+
 SceneView& Session::scene(const View& view) {
   for (const auto& scene : scenes_)
     if (scene->plan() == view) return *scene;
@@ -51,6 +73,7 @@ void Session::run(const RunPlan& given, RunSink& sink, StageProgress& progress) 
   const RunContext run{plan, scene.summary(), reference};
   sink.begin(run);
   Simulator simulator(plan, scene, reference, traces_, jobs_);
+  const SharedFrames shared(std::span(&plan, 1), *this);
   for (const algos::TechniqueChoice& technique : plan.techniques)
     for (const GpuConfig& gpu : plan.gpus) {
       const std::string name = point_name(technique, gpu);

@@ -3,6 +3,7 @@
 // look at them, work traces, references, GPU files and
 // the calibration.
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "lab/base/stage_progress.h"
@@ -10,6 +11,23 @@
 #include "lab/point/run_sink.h"
 
 namespace hwsim::lab {
+
+class Session;
+
+/// While it lives, the frames of these plans share passes. One that is made meanwhile does nothing.
+class SharedFrames {
+ public:
+  /// Plans that look at another view than the first end the list. Throws InputError where its scene cannot be
+  /// read.
+  SharedFrames(std::span<const RunPlan> plans, Session& session);
+  ~SharedFrames();
+  SharedFrames(const SharedFrames&) = delete;
+  SharedFrames& operator=(const SharedFrames&) = delete;
+
+ private:
+  Session& session_;
+  bool active_;
+};
 
 class Session {
  public:
@@ -19,7 +37,10 @@ class Session {
         observer_(observer),
         files_(ConfigFolder(options.config_folder)),
         cache_(options.cache_folder, options.cache_limit_bytes),
-        traces_({.jobs = options.jobs, .disk = options.use_cache}, cache_, observer) {}
+        traces_({.jobs = options.jobs,
+                 .disk = options.use_cache,
+                 .shared_passes_bytes = options.shared_passes_bytes},
+                cache_, observer) {}
 
   Observer& observer() const { return observer_; }
   int jobs() const { return jobs_; }
@@ -45,6 +66,8 @@ class Session {
   /// Throws InputError with what keeps techniques of the plan from running on its GPUs.
   void require_possible(const RunPlan& plan, SceneView& scene);
 
+  friend class SharedFrames;
+
   struct KeptReference {
     const SceneView* scene = nullptr;
     int samples = 0;
@@ -56,6 +79,7 @@ class Session {
   ConfigFiles files_;
   Cache cache_;
   TraceStore traces_;
+  bool shares_frames_ = false;
   std::vector<std::unique_ptr<SceneView>> scenes_;
   std::vector<std::unique_ptr<KeptReference>> references_;
 };

@@ -48,8 +48,8 @@ Image heat_picture(const Image& values, float full_scale) {
 
 Bytes shading_picture(const Image& heat) {
   const float hottest = std::max(1.0f, largest(heat));
-  return pipeline::encode_png(with_scale(heat_picture(heat, hottest), static_cast<double>(hottest),
-                                         "shader invocations a pixel"));
+  return pipeline::encode_png(
+      with_scale(heat_picture(heat, hottest), static_cast<double>(hottest), "shader invocations a pixel"));
 }
 
 void write_heat(const std::string& path, const Image& values, float full_scale) {

@@ -76,6 +76,7 @@ Json manifest(const ManifestInput& input) {
   json["fragments_per_s"] = input.emulation_s > 0.0
                                 ? Json(static_cast<double>(input.fragments) / input.emulation_s)
                                 : Json(nullptr);
+  json["reused_passes"] = input.reused_passes;
   json["state"] = input.state;
   return json;
 }

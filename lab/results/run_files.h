@@ -7,8 +7,8 @@
 
 namespace hwsim::lab {
 
-/// Everything that belongs to one point but its pictures (picture_writer.h): result.json, tables, trace, and a
-/// run.toml with its gpu.toml.
+/// Everything that belongs to one point but its pictures (picture_writer.h): result.json, tables, trace, and
+/// a run.toml with its gpu.toml.
 void write_point_files(const std::string& folder, const PointResult& point, const RunPlan& plan,
                        const std::string& scene_name);
 
@@ -19,7 +19,8 @@ struct ManifestInput {
   double wall_s = 0.0;
   std::uint64_t fragments = 0;  ///< shaded by emulations of this run
   double emulation_s = 0.0;
-  std::string state;  ///< done, failed
+  std::uint64_t reused_passes = 0;  ///< that points share and were emulated once
+  std::string state;                ///< done, failed
 };
 nlohmann::ordered_json manifest(const ManifestInput& input);
 

@@ -19,6 +19,7 @@ void RunRecord::point(const PointResult& point, const RunContext& run) {
   if (point.from_cache) return;
   fragments_ += shader_invocations(point.emulation->trace);
   emulation_s_ += point.emulation->wall_s;
+  reused_passes_ += point.emulation->reused_passes;
 }
 
 double RunRecord::wall_s() const {
@@ -32,6 +33,7 @@ nlohmann::ordered_json RunRecord::manifest(const std::string& state) const {
                         .wall_s = wall_s(),
                         .fragments = fragments_,
                         .emulation_s = emulation_s_,
+                        .reused_passes = reused_passes_,
                         .state = state});
 }
 

@@ -44,7 +44,8 @@ class RunRecord : public RunSink {
   nlohmann::ordered_json manifest(const std::string& state) const;
   double wall_s() const;
 
-  /// Waits for the pictures, writes the manifest and the log, and puts the folder in its place, which is returned.
+  /// Waits for the pictures, writes the manifest and the log, and puts the folder in its place, which is
+  /// returned.
   std::string commit(const std::string& log);
 
  private:
@@ -55,6 +56,7 @@ class RunRecord : public RunSink {
   std::optional<SceneSummary> scene_;
   std::uint64_t fragments_ = 0;
   double emulation_s_ = 0.0;
+  std::uint64_t reused_passes_ = 0;
 };
 
 }  // namespace hwsim::lab

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <map>
 
 #include "algos/source_digest.h"
 #include "hwsim/base/byte_codec.h"
@@ -66,6 +67,14 @@ std::string trace_key(const std::string& work) {
   return fmt::format("{}|{:016x}|{}", algos::source_digest(), trace_version(), work);
 }
 
+pipeline::FrameGraph graph_of(SceneView& scene, const algos::TechniqueChoice& technique,
+                              const GpuConfig& gpu) {
+  algos::FrameRequest request = scene.frame_request();
+  request.features = gpu.features;
+  request.functional = gpu.functional;
+  return algos::build_frame(technique, request);
+}
+
 pipeline::SealKind frame_kind() { return {"frame", algos::source_digest()}; }
 pipeline::SealKind image_kind() { return {"image", algos::source_digest()}; }
 
@@ -118,6 +127,30 @@ EmulatedFrame TraceStore::frame(SceneView& scene, const algos::TechniqueChoice& 
   return result;
 }
 
+void TraceStore::expect(SceneView& scene, std::span<const WantedFrame> frames, const FrameNeeds& needs) {
+  memo_.clear();
+  if (options_.shared_passes_bytes == 0) return;
+  std::map<std::string, WantedFrame> seen;
+  std::vector<WantedFrame> emulated;
+  for (const WantedFrame& frame : frames) {
+    const std::string key = trace_key(work_text(scene, *frame.technique, *frame.gpu, needs));
+    if (in_memory(key, needs.image) || !seen.emplace(key, frame).second) continue;
+    std::error_code error;
+    const bool on_disk = options_.disk && std::filesystem::exists(frame_path(key), error) &&
+                         (!needs.image || std::filesystem::exists(image_path(key), error));
+    if (!on_disk) emulated.push_back(frame);
+  }
+  if (emulated.size() < 2) return;
+  pipeline::EmulationOptions options;
+  options.skip = needs.skip;
+  for (const WantedFrame& frame : emulated) try {
+      memo_.expect(graph_of(scene, *frame.technique, *frame.gpu), frame.gpu->features, frame.gpu->functional,
+                   options);
+    } catch (const InputError&) {
+      continue;  // it cannot run, which frame() says
+    }
+}
+
 bool TraceStore::holds(const SceneView& scene, const algos::TechniqueChoice& technique, const GpuConfig& gpu,
                        const FrameNeeds& needs) const {
   return in_memory(trace_key(work_text(scene, technique, gpu, needs)), needs.image) != nullptr;
@@ -128,10 +161,7 @@ std::vector<Diagnostic> TraceStore::problems(SceneView& scene, const algos::Tech
   const std::string key = trace_key(work_text(scene, technique, gpu, needs));
   std::error_code error;
   if (in_memory(key, false) || (options_.disk && std::filesystem::exists(frame_path(key), error))) return {};
-  algos::FrameRequest request = scene.frame_request();
-  request.features = gpu.features;
-  request.functional = gpu.functional;
-  return pipeline::validate(algos::build_frame(technique, request), gpu.features, gpu.functional);
+  return pipeline::validate(graph_of(scene, technique, gpu), gpu.features, gpu.functional);
 } catch (const InputError& error) {
   return error.diagnostics();
 }
@@ -167,14 +197,12 @@ std::shared_ptr<const Emulation> TraceStore::emulate(SceneView& scene,
                                                      const algos::TechniqueChoice& technique,
                                                      const GpuConfig& gpu, const FrameNeeds& needs,
                                                      const ProgressFunction& progress) {
-  algos::FrameRequest request = scene.frame_request();
-  request.features = gpu.features;
-  request.functional = gpu.functional;
-  const pipeline::FrameGraph graph = algos::build_frame(technique, request);
+  const pipeline::FrameGraph graph = graph_of(scene, technique, gpu);
   pipeline::EmulationOptions options;
   options.jobs = options_.jobs;
   options.skip = needs.skip;
   options.progress = progress;
+  options.memo = &memo_;
   Emulation emulation = pipeline::emulate(graph, gpu.features, gpu.functional, options);
   emulation.trace.technique = technique_text(technique);
   emulation.trace.technique_counters = algos::technique_counter_ids();

@@ -3,11 +3,13 @@
 // here, so that varying a GPU's numbers never draws again.
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "lab/store/scene_view.h"
 #include "pipeline/emulate/emulator.h"
+#include "pipeline/emulate/pass_memo.h"
 
 namespace hwsim::lab {
 
@@ -31,15 +33,24 @@ class TraceStore {
  public:
   struct Options {
     int jobs = 1;
-    bool disk = true;  ///< false: neither reads nor writes cached traces
+    bool disk = true;                       ///< false: neither reads nor writes cached traces
+    std::uint64_t shared_passes_bytes = 0;  ///< images that frames share may take; 0: they share nothing
   };
   /// Both must outlive the store.
   TraceStore(const Options& options, const Cache& cache, Observer& observer)
-      : options_(options), cache_(cache), observer_(observer) {}
+      : options_(options), cache_(cache), observer_(observer), memo_(options.shared_passes_bytes) {}
 
   /// Only features and limits of `gpu` matter. Throws InputError where the technique cannot run on it.
   EmulatedFrame frame(SceneView& scene, const algos::TechniqueChoice& technique, const GpuConfig& gpu,
                       const FrameNeeds& needs, const ProgressFunction& progress);
+
+  struct WantedFrame {
+    const algos::TechniqueChoice* technique;
+    const GpuConfig* gpu;
+  };
+  /// What frame() will be asked for next, in this order: passes that these frames share are emulated once.
+  void expect(SceneView& scene, std::span<const WantedFrame> frames, const FrameNeeds& needs);
+  void expect_nothing() { memo_.clear(); }
 
   /// Why the technique cannot run on the GPU; none where it can, or where its trace is kept.
   std::vector<Diagnostic> problems(SceneView& scene, const algos::TechniqueChoice& technique,
@@ -74,6 +85,7 @@ class TraceStore {
   const Cache& cache_;
   Observer& observer_;
   std::vector<Kept> kept_;  ///< the newest last
+  pipeline::PassMemo memo_;
 };
 
 }  // namespace hwsim::lab

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -118,6 +119,39 @@ class SweepRunner {
   ResultBatch batch_;
 };
 
+/// Frames that come next on one scene share passes.
+class FramesAhead {
+ public:
+  FramesAhead(const SweepPlan& plan, Session& session) : plan_(plan), session_(session) {}
+  ~FramesAhead() { session_.traces().expect_nothing(); }
+  FramesAhead(const FramesAhead&) = delete;
+  FramesAhead& operator=(const FramesAhead&) = delete;
+
+  /// Before the first of `points` runs, and then the others.
+  void reach(std::span<const std::size_t> points) {
+    if (known_.contains(plan_.work(points.front()))) return;
+    known_.clear();
+    std::vector<PlannedPoint> planned;  // one of each emulation
+    for (const std::size_t i : points) {
+      if (known_.contains(plan_.work(i))) continue;
+      if (planned.size() == kMostFrames) break;
+      PlannedPoint point = plan_[i];
+      if (!planned.empty() && point.scene != planned.front().scene) break;
+      known_.insert(plan_.work(i));
+      planned.push_back(std::move(point));
+    }
+    std::vector<TraceStore::WantedFrame> frames;
+    for (const PlannedPoint& point : planned) frames.push_back({point.technique, &point.gpu});
+    session_.traces().expect(*planned.front().scene, frames, {planned.front().plan->skip, false});
+  }
+
+ private:
+  static constexpr std::size_t kMostFrames = 32;
+  const SweepPlan& plan_;
+  Session& session_;
+  std::set<std::uint32_t> known_;
+};
+
 void run_points(const SweepPlan& plan, const SweepJob& job, SweepStore& store, Session& session) {
   store.remember("command_line", job.command_line);
   store.remember("version", std::string(build_info().version));
@@ -128,7 +162,9 @@ void run_points(const SweepPlan& plan, const SweepJob& job, SweepStore& store, S
   StageProgress progress(session.observer(), ours.size());
   SweepRunner runner(store, session);
   BlockSize size;
+  FramesAhead ahead(plan, session);
   for (std::size_t at = 0; at < ours.size();) {
+    ahead.reach(std::span(ours).subspan(at));
     std::vector<PlannedPoint> block;
     for (; block.size() < size.points() && at < ours.size(); ++at) block.push_back(plan[ours[at]]);
     size.measure([&] { runner.run(block, progress); });

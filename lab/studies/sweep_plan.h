@@ -33,6 +33,8 @@ class SweepPlan {
 
   std::size_t size() const { return work_.size(); }
   PlannedPoint operator[](std::size_t index) const;
+  /// Points of one number share an emulation.
+  std::uint32_t work(std::size_t index) const { return work_[index]; }
 
   /// What the database keeps of the point.
   SweepPoint row(std::size_t index) const;

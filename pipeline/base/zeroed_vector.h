@@ -12,6 +12,9 @@ namespace hwsim::pipeline {
 /// Returns how many bytes went.
 std::size_t give_back_pages(void* memory, std::size_t bytes);
 
+/// Copies to memory that is zero.
+void copy_but_zeros(const void* from, void* to, std::size_t bytes);
+
 /// Memory of `calloc`: for large sizes these are pages that the kernel makes when they are written. Elements
 /// that are made without a value are not written.
 template <class T>
@@ -39,9 +42,25 @@ struct ZeroedAllocator {
   bool operator==(const ZeroedAllocator& /*other*/) const { return true; }
 };
 
-/// For sizes that are set once: an element that was removed and made again keeps its old value.
+/// For sizes that are set once: an element that was removed and made again keeps its old value. A copy takes
+/// no memory for pages of zeros either.
 template <class T>
-using ZeroedVector = std::vector<T, ZeroedAllocator<T>>;
+class ZeroedVector : public std::vector<T, ZeroedAllocator<T>> {
+ public:
+  using Base = std::vector<T, ZeroedAllocator<T>>;
+  using Base::Base;
+  ZeroedVector() = default;
+  ~ZeroedVector() = default;
+  ZeroedVector(ZeroedVector&&) noexcept = default;
+  ZeroedVector& operator=(ZeroedVector&&) noexcept = default;
+  ZeroedVector(const ZeroedVector& other) : Base(other.size()) {
+    copy_but_zeros(other.data(), this->data(), other.size() * sizeof(T));
+  }
+  ZeroedVector& operator=(const ZeroedVector& other) {
+    if (this != &other) *this = ZeroedVector(other);
+    return *this;
+  }
+};
 
 /// The same for elements.
 template <class T>

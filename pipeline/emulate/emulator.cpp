@@ -15,6 +15,8 @@
 #include "pipeline/emulate/material_views.h"
 #include "pipeline/emulate/pass_description.h"
 #include "pipeline/emulate/pass_reuse.h"
+#include "pipeline/emulate/shading_heat.h"
+#include "pipeline/emulate/shared_passes.h"
 #include "pipeline/emulate/transfer.h"
 #include "pipeline/memory/depth_format.h"
 
@@ -35,12 +37,10 @@ class FrameRunner {
         textures_(graph.scene()),
         materials_(graph.scene(), textures_),
         memory_(graph, compiled),
+        shared_(options.inspect ? nullptr : options.memo, graph, compiled, functional, options),
         workers_(static_cast<std::size_t>(std::max(1, options.jobs))),
         fetches_(functional.post_transform_cache_entries, options.exact_reuse),
-        heat_blocks_x_((graph.width() + kBlockPx - 1) / kBlockPx) {
-    const int heat_blocks_y = (graph.height() + kBlockPx - 1) / kBlockPx;
-    heat_.resize(static_cast<std::size_t>(heat_blocks_x_ * heat_blocks_y) * kBlockLanes);
-  }
+        heat_(graph.width(), graph.height()) {}
 
   void run(Emulation& result) {
     for (std::size_t position = 0; position < compiled_.order.size(); ++position) {
@@ -48,11 +48,16 @@ class FrameRunner {
       if (options_.progress)
         options_.progress(static_cast<double>(position) / static_cast<double>(compiled_.order.size()),
                           pass.name);
-      memory_.allocate(static_cast<int>(position));
+      const PassResult* known = shared_.reused(position);
+      if (known == nullptr) {
+        memory_.allocate(static_cast<int>(position));
+        shared_.bring(position, memory_);
+      }
       PassWork work = describe(graph_, compiled_, static_cast<int>(position), memory_.cleared());
       const auto start = std::chrono::steady_clock::now();
       const std::clock_t cpu_start = std::clock();
-      run_pass(pass, work);
+      known != nullptr ? reuse_pass(position, *known, work) : run_and_keep(position, pass, work);
+      memory_.note_writes(pass);
       result.pass_cpu_s.push_back(static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC);
       result.pass_wall_s.push_back(
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
@@ -61,21 +66,15 @@ class FrameRunner {
       memory_.release(static_cast<int>(position));
     }
     if (options_.progress) options_.progress(1.0, "");
+    shared_.bring_output(graph_.output(), memory_);
     result.color = read_output();
-    result.shading_heat = read_heat();
-    result.skipped["frustum"] = skipped_clusters_;
-    result.skipped["single_color_pixels"] = skipped_pixels_;
-    result.skipped["cleared_tiles"] = memory_.untouched_tiles();
-    std::uint64_t passed = 0;
-    for (const BinWorker& worker : workers_) {
-      result.skipped["hidden_tiles"] += worker.hidden_tiles_skipped;
-      passed += worker.hidden_samples_passed;
-      result.skipped["accepted_tiles"] += worker.accepted_tiles_skipped;
-      result.skipped["plane_tiles"] += worker.plane_tiles_skipped;
-    }
+    result.shading_heat = heat_.image(options_.jobs);
+    for (const BinWorker& worker : workers_)
+      if (const std::uint64_t n = worker.hidden_samples_passed; n != 0)
+        throw std::logic_error("the coarse depth test killed " + std::to_string(n) + " samples that pass");
+    result.skipped = (skipped() + reused_skips_).by_name();
     result.skipped["passes"] = compiled_.culled.size();
-    if (passed != 0)
-      throw std::logic_error("the coarse depth test killed " + std::to_string(passed) + " samples that pass");
+    result.reused_passes = shared_.reused_passes();
   }
 
  private:
@@ -84,6 +83,45 @@ class FrameRunner {
   GpuImage& whole_image(ImageId id) {
     image(id).end_reads(options_.jobs);
     return image(id);
+  }
+
+  SkipCounts skipped() const {
+    SkipCounts counts{.frustum = skipped_clusters_,
+                      .cleared_tiles = memory_.untouched_tiles(),
+                      .single_color_pixels = skipped_pixels_};
+    for (const BinWorker& worker : workers_) {
+      counts.hidden_tiles += worker.hidden_tiles_skipped;
+      counts.accepted_tiles += worker.accepted_tiles_skipped;
+      counts.plane_tiles += worker.plane_tiles_skipped;
+    }
+    return counts;
+  }
+
+  void reuse_pass(std::size_t position, const PassResult& known, PassWork& work) {
+    work.chunks = known.chunks;
+    work.reuse = known.reuse;
+    work.raster_samples = known.raster_samples;
+    reused_skips_ += known.skipped;
+    heat_.add(known.heat);
+    shared_.take(position, memory_);
+  }
+
+  void run_and_keep(std::size_t position, const Pass& pass, PassWork& work) {
+    if (!shared_.wants(position)) {
+      run_pass(pass, work);
+    } else {
+      const SkipCounts skipped_before = skipped();
+      const std::vector<std::uint32_t> heat_before = heat_.counts();
+      run_pass(pass, work);
+      shared_.keep(position, memory_,
+                   {.chunks = work.chunks,
+                    .reuse = work.reuse,
+                    .raster_samples = work.raster_samples,
+                    .skipped = skipped() - skipped_before,
+                    .heat = heat_.added_since(heat_before),
+                    .untouched_tiles = {}});
+    }
+    shared_.keep_states(position, memory_);
   }
 
   void run_pass(const Pass& pass, PassWork& work) {
@@ -101,7 +139,6 @@ class FrameRunner {
         run_transfer(pass, work);
         break;
     }
-    memory_.note_writes(pass);
   }
 
   PassContext make_context(const Pass& pass) {
@@ -125,7 +162,7 @@ class FrameRunner {
     bind(pass, c.resources);
     set_positions(pass, c);
     if (c.depth != nullptr) place_planes(*c.depth, c.positions);
-    set_heat(pass, c);
+    heat_.attach(c);
     return c;
   }
 
@@ -201,17 +238,6 @@ class FrameRunner {
     c.sample_max_x = right->x;
     c.sample_min_y = top->y;
     c.sample_max_y = bottom->y;
-  }
-
-  // Shading at a multiple of the frame's size (supersampling) counts for the pixel that it ends in; other
-  // sizes (shadow maps) do not count.
-  void set_heat(const Pass& pass, PassContext& c) {
-    for (int shift = 0; shift < 5; ++shift) {
-      if (pass.width != graph_.width() << shift || pass.height != graph_.height() << shift) continue;
-      c.heat = heat_.data();
-      c.heat_blocks_x = heat_blocks_x_;
-      c.heat_shift = shift;
-    }
   }
 
   void start_workers(const Pass& pass, std::size_t chunk_count, PassContext& c) {
@@ -385,19 +411,6 @@ class FrameRunner {
     return to_linear_image(from, graph_.output_view(), options_.jobs);
   }
 
-  Image read_heat() const {
-    Image out(graph_.width(), graph_.height());
-    parallel_for(static_cast<std::size_t>((out.height + kBlockPx - 1) / kBlockPx), options_.jobs,
-                 [&](std::size_t row, int) {
-                   const int first = static_cast<int>(row) * kBlockPx;
-                   for (int y = first; y < std::min(first + kBlockPx, out.height); ++y)
-                     for (int x = 0; x < out.width; ++x)
-                       out.at(x, y).x = static_cast<float>(heat_[static_cast<std::size_t>(
-                           ((y >> 3) * heat_blocks_x_ + (x >> 3)) * kBlockLanes + lane_of(x & 7, y & 7))]);
-                 });
-    return out;
-  }
-
   const FrameGraph& graph_;
   const CompiledGraph& compiled_;
   const FunctionalConfig& functional_;
@@ -405,13 +418,14 @@ class FrameRunner {
   TextureStore textures_;
   MaterialViews materials_;
   FrameMemory memory_;
+  SharedPasses shared_;
+  SkipCounts reused_skips_;
   DepthPlaneView planes_;                           ///< what the pass at hand reads
   std::vector<SamplePosition> coverage_positions_;  ///< likewise
   std::vector<BinWorker> workers_;
   Segment segment_;
   VertexFetches fetches_;
-  int heat_blocks_x_;
-  std::vector<std::uint32_t> heat_;
+  ShadingHeat heat_;
   std::uint64_t skipped_clusters_ = 0;
   std::uint64_t skipped_pixels_ = 0;
 };

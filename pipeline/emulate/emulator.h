@@ -47,13 +47,16 @@ inline constexpr std::array<SkipInfo, 6> kSkips = {{
 }};
 
 struct GpuImage;  // memory/gpu_image.h
+class PassMemo;   // pass_memo.h
 
 struct EmulationOptions {
   int jobs = 1;
   SkipSwitches skip;
   bool exact_reuse = false;  ///< reuse distances of all blocks, not of a sample: slow, to know the error
   std::function<void(double done_ratio, const std::string& pass)> progress;  ///< optional
-  /// Optional: a look at memory after each pass. Images by ImageId; null while not alive.
+  /// Optional: passes that another frame has run are not emulated again. Neither image nor trace change.
+  PassMemo* memo = nullptr;
+  /// Optional: a look at memory after each pass, without a memo. Images by ImageId; null while not alive.
   std::function<void(const Pass& pass, std::span<const GpuImage* const> images)> inspect;
 };
 
@@ -63,6 +66,7 @@ struct Emulation {
   Image shading_heat;                            ///< r: fragment shader invocations of each pixel, all passes
   std::map<std::string, std::uint64_t> skipped;  ///< by switch: how often it applied
   double wall_s = 0.0;
+  std::uint64_t reused_passes = 0;  ///< that EmulationOptions::memo knew
   std::vector<double> pass_wall_s;  ///< the trace's passes, memory allocation left out
   std::vector<double> pass_cpu_s;   ///< processor time of all threads
 };

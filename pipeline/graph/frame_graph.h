@@ -13,6 +13,7 @@
 #include "hwsim/trace/format.h"
 #include "hwsim/trace/work_trace.h"
 #include "pipeline/batch/program.h"
+#include "pipeline/batch/uniforms.h"
 #include "pipeline/image/image_io.h"
 #include "pipeline/scene/scene.h"
 #include "pipeline/state/pipeline_state.h"
@@ -81,9 +82,9 @@ struct DrawBatch {
   const VertexProgram* vertex = nullptr;
   const GeometryProgram* geometry = nullptr;  ///< optional
   const FragmentProgram* fragment = nullptr;  ///< none: depth only
-  std::shared_ptr<const void> vertex_uniforms;
-  std::shared_ptr<const void> geometry_uniforms;
-  std::shared_ptr<const void> fragment_uniforms;
+  Uniforms vertex_uniforms;
+  Uniforms geometry_uniforms;
+  Uniforms fragment_uniforms;
   std::vector<DrawCall> draws;
   /// The geometry program's points come from a tessellator (GpuFeatures::tessellator_points): none of them
   /// passes through a buffer, nor is their number limited.
@@ -128,8 +129,8 @@ struct Pass {
   PipelineState state;             // full_screen
   const FragmentProgram* fragment = nullptr;
   const ComputeProgram* compute = nullptr;
-  int groups_x = 0, groups_y = 0;        // compute
-  std::shared_ptr<const void> uniforms;  // full_screen and compute
+  int groups_x = 0, groups_y = 0;  // compute
+  Uniforms uniforms;               // full_screen and compute
 
   std::vector<ImageId> targets;  ///< clear: images; copy and resolve: the destination; full-screen and
                                  ///< compute: images that shaders store to

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/batch/uniforms.h"
 #include "pipeline/scene/scene.h"
 
 namespace hwsim::pipeline {
@@ -13,6 +14,11 @@ struct DirectionalLight {
   glm::vec3 color{0.0f};
   bool shadowed = false;
 };
+/// All members by name: a new one that is forgotten here does not compile.
+inline void add_content(ContentDigest& digest, const DirectionalLight& uniforms) {
+  const auto& [to_light, color, shadowed] = uniforms;
+  digest.add(to_light, color, shadowed);
+}
 
 struct PointLight {
   glm::vec3 position{0.0f};
@@ -23,6 +29,11 @@ struct PointLight {
   glm::vec3 axis{0.0f, -1.0f, 0.0f};
   float inv_cos_span = 1.0f;
 };
+/// All members by name: a new one that is forgotten here does not compile.
+inline void add_content(ContentDigest& digest, const PointLight& uniforms) {
+  const auto& [position, inv_range2, color, cos_outer, axis, inv_cos_span] = uniforms;
+  digest.add(position, inv_range2, color, cos_outer, axis, inv_cos_span);
+}
 
 /// All lights of a frame. The vectors hold at least one element, so that a shader can be counted without a
 /// scene.
@@ -41,6 +52,13 @@ struct LightingUniforms {
   float shadow_offset_m = 0.0f;  ///< receivers are moved along their normal by this before the comparison
   float shadow_bias = 0.0f;      ///< and by this in depth
 };
+/// All members by name: a new one that is forgotten here does not compile.
+inline void add_content(ContentDigest& digest, const LightingUniforms& uniforms) {
+  const auto& [eye, ambient, model, extended, directional_count, point_count, directional, points,
+               shadow_from_world, shadow_slot, shadow_offset_m, shadow_bias] = uniforms;
+  digest.add(eye, ambient, model, extended, directional_count, point_count, directional, points,
+             shadow_from_world, shadow_slot, shadow_offset_m, shadow_bias);
+}
 
 /// Whether some mesh has an unlit material.
 bool needs_extended_shading(const Scene& scene);

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 
 #include "pipeline/batch/program.h"
+#include "pipeline/batch/uniforms.h"
 
 namespace hwsim::pipeline {
 
@@ -28,6 +29,11 @@ struct GeometryVaryings {
 struct MeshVertexUniforms {
   glm::mat4 clip_from_world{1.0f};
 };
+/// All members by name: a new one that is forgotten here does not compile.
+inline void add_content(ContentDigest& digest, const MeshVertexUniforms& uniforms) {
+  const auto& [clip_from_world] = uniforms;
+  digest.add(clip_from_world);
+}
 
 const VertexProgram& mesh_position_program();   ///< no varyings: depth passes
 const VertexProgram& mesh_uv_program();         ///< the base color texture's, at 0: alpha-tested depth passes

@@ -101,7 +101,7 @@ TEST_F(RunTest, WritesTheFilesOfARunDirectory) {
   EXPECT_EQ(place.listing(), "result triangle.gltf") << "something partial was left";
   const json manifest = json::parse(place.read("result/manifest.json"));
   expect_keys(manifest, {"version", "model_version", "commit", "compiler", "host", "argv", "overrides",
-                         "seed", "input_hashes", "wall_s", "fragments_per_s", "state"});
+                         "seed", "input_hashes", "wall_s", "fragments_per_s", "reused_passes", "state"});
   EXPECT_EQ(manifest["state"], "done");
 }
 

@@ -6,6 +6,7 @@
 #include "algos/agaa/shaders/counters.h"
 #include "hwsim/trace/format.h"
 #include "pipeline/batch/program.h"
+#include "pipeline/batch/uniforms.h"
 #include "pipeline/shade/lighting.h"
 #include "pipeline/state/pipeline_state.h"
 
@@ -23,6 +24,11 @@ struct PixelRays {
   glm::vec3 first{0.0f, 0.0f, -1.0f}, per_x{0.0f}, per_y{0.0f};
   glm::vec3 origin{0.0f}, origin_per_x{0.0f}, origin_per_y{0.0f};
 };
+/// All members by name: a new one that is forgotten here does not compile.
+inline void add_content(pipeline::ContentDigest& digest, const PixelRays& uniforms) {
+  const auto& [first, per_x, per_y, origin, origin_per_x, origin_per_y] = uniforms;
+  digest.add(first, per_x, per_y, origin, origin_per_x, origin_per_y);
+}
 
 /// The render targets of an aggregate, by what they hold; -1: none.
 struct AggregateTargets {
@@ -59,6 +65,11 @@ struct AggregateUniforms {
 struct VisibilityUniforms {
   PixelRays rays;
 };
+/// All members by name: a new one that is forgotten here does not compile.
+inline void add_content(pipeline::ContentDigest& digest, const VisibilityUniforms& uniforms) {
+  const auto& [rays] = uniforms;
+  digest.add(rays);
+}
 /// Pass 1: the primitive's normal as a rg8_unorm code; with `alpha`, the base color's alpha for coverage.
 const pipeline::FragmentProgram& agaa_visibility_program(bool alpha);
 

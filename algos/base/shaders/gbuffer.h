@@ -3,6 +3,7 @@
 #include <array>
 
 #include "algos/base/shaders/gbuffer_layouts.h"
+#include "pipeline/batch/uniforms.h"
 #include "pipeline/shade/lighting.h"
 #include "pipeline/state/pipeline_state.h"
 
@@ -27,5 +28,12 @@ struct DeferredUniforms {
   bool compare_all = false;
   bool mean_in_tiles = false;  ///< compute tiles write the mean of a pixel's samples, not the samples
 };
+/// All members by name: a new one that is forgotten here does not compile.
+inline void add_content(pipeline::ContentDigest& digest, const DeferredUniforms& uniforms) {
+  const auto& [lighting, world_from_clip, view_from_clip, view_from_world, background, width, height, samples,
+               positions, normal_dot_min, z_scale, compare_all, mean_in_tiles] = uniforms;
+  digest.add(lighting, world_from_clip, view_from_clip, view_from_world, background, width, height, samples,
+             positions, normal_dot_min, z_scale, compare_all, mean_in_tiles);
+}
 
 }  // namespace hwsim::algos

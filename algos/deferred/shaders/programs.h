@@ -3,6 +3,7 @@
 #include "algos/base/shaders/counters.h"
 #include "algos/base/shaders/gbuffer.h"
 #include "pipeline/batch/program.h"
+#include "pipeline/batch/uniforms.h"
 
 namespace hwsim::algos {
 
@@ -11,6 +12,11 @@ struct GBufferUniforms {
   bool full_varyings = false;
   bool extended = false;  ///< LightingUniforms::extended
 };
+/// All members by name: a new one that is forgotten here does not compile.
+inline void add_content(pipeline::ContentDigest& digest, const GBufferUniforms& uniforms) {
+  const auto& [view_from_world, full_varyings, extended] = uniforms;
+  digest.add(view_from_world, full_varyings, extended);
+}
 /// Writes the layout's attachments. Here and below, `extended` is the lighting's.
 const pipeline::FragmentProgram& gbuffer_program(GBufferEncoding encoding, bool full_varyings,
                                                  bool alpha_test, bool extended = false);

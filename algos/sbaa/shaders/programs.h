@@ -6,6 +6,7 @@
 #include "algos/base/shaders/gbuffer.h"
 #include "algos/sbaa/shaders/counters.h"
 #include "pipeline/batch/program.h"
+#include "pipeline/batch/uniforms.h"
 
 namespace hwsim::algos {
 
@@ -20,6 +21,11 @@ enum class SbaaSample : std::uint8_t {
 struct SbaaIdUniforms {
   int id_mask = 127;
 };
+/// All members by name: a new one that is forgotten here does not compile.
+inline void add_content(pipeline::ContentDigest& digest, const SbaaIdUniforms& uniforms) {
+  const auto& [id_mask] = uniforms;
+  digest.add(id_mask);
+}
 /// Colors: the number; then the normal. Varyings: none or the texture coordinates for SbaaSample::id,
 /// the normal and these otherwise.
 const pipeline::FragmentProgram& sbaa_id_program(SbaaSample sample, bool alpha_test);
