@@ -9,6 +9,7 @@
 #include "lab/report/gather.h"
 #include "lab/report/page.h"
 #include "lab/request/image_input.h"
+#include "lab/request/request_words.h"
 #include "lab/studies/published_runs.h"
 
 namespace hwsim::lab {

@@ -1,6 +1,7 @@
 #pragma once
 // The whole application as one class: a program asks a lab, and gets answers as plain data. A lab keeps the
 // scenes, traces and references that it has loaded, so that a second question costs less than the first.
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>

@@ -8,6 +8,7 @@
 #include "cli/arguments/argument_values.h"
 #include "lab/base/messages.h"
 #include "lab/base/text.h"
+#include "lab/request/request_words.h"
 
 namespace hwsim::cli {
 namespace {
@@ -104,7 +105,8 @@ void add_report_file(CLI::App& app, std::string& file) {
 
 void add_view_flags(CLI::App& app, ViewArguments& view) {
   app.add_option_function<std::string>(
-         "--resolution", [&view](const std::string& text) { view.resolution = parse_resolution(text); },
+         "--resolution",
+         [&view](const std::string& text) { view.resolution = parse_resolution(text, "--resolution"); },
          "Pixels, 1 to 16384 each way; default 1280x720")
       ->type_name("WxH");
   app.add_option("--camera", view.camera, "A camera of the scene; default the first")
@@ -182,12 +184,18 @@ void add_reference_samples(CLI::App& app, RunArguments& run) {
       ->check(CLI::Range(1, 65536))
       ->type_name("[SAMPLES]");
   add_reference_shadows(app, run.view);
+}
+
+void add_no_image(CLI::App& app, RunArguments& run) {
   app.add_flag("--no-image", run.no_image, "Write no images");
 }
 
 void add_vary(CLI::App& app, std::vector<std::string>& vary, bool& zip) {
-  add_repeatable(app, "--vary", vary, "Values of a setting: a,b,c or lo..hi:n or lo..hi:n:log (repeatable)",
-                 "PATH=VALUES");
+  add_repeatable(
+      app, "--vary", vary,
+      "Values of a setting: a,b,c or lo..hi:n or lo..hi:n:log; or of resolution, camera, gpu, overlay, "
+      "scene (repeatable)",
+      "PATH=VALUES");
   app.add_flag("--zip", zip, "Vary all together instead of every combination");
 }
 

@@ -23,6 +23,7 @@ void add_view(CLI::App& app, ViewArguments& view, bool required);
 void add_points(CLI::App& app, RunArguments& run);
 void add_reference_shadows(CLI::App& app, ViewArguments& view);
 void add_reference_samples(CLI::App& app, RunArguments& run);
+void add_no_image(CLI::App& app, RunArguments& run);
 void add_vary(CLI::App& app, std::vector<std::string>& vary, bool& zip);
 
 }  // namespace hwsim::cli

@@ -11,7 +11,4 @@ namespace hwsim::cli {
 /// "csv" or "csv=passes.csv". Throws InputError U003.
 FormatRequest parse_format(const std::string& text);
 
-/// "1280x720". Throws InputError U005.
-Resolution parse_resolution(std::string_view text);
-
 }  // namespace hwsim::cli

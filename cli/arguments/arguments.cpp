@@ -97,6 +97,7 @@ void Parser::add_run() {
   add_view(sub, run.view, true);
   add_points(sub, run);
   add_reference_samples(sub, run);
+  add_no_image(sub, run);
   add_out(sub, run.out);
   add_report_file(sub, run.report);
   add_common(sub, run.common);
@@ -131,6 +132,7 @@ void Parser::add_rank() {
   add_view(sub, rank.view, true);
   add_points(sub, rank);
   add_reference_samples(sub, rank);
+  add_no_image(sub, rank);
   sub.add_option("--budget", rank.budget, "Limits of aa_ms, frame_ms, extra_mib, memory_mib, dram_mb")
       ->type_name("LIMITS");
   add_out(sub, rank.out);
@@ -142,6 +144,7 @@ void Parser::add_sweep() {
   CLI::App& sub = add(app, "sweep", kHelpSweep, [this] { return Command(sweep); });
   add_view(sub, sweep.view, false);
   add_points(sub, sweep);
+  add_reference_samples(sub, sweep);
   add_vary(sub, sweep.vary, sweep.zip);
   sub.add_option("--sample", sweep.sample, "A sample of the ranges instead of every combination")
       ->type_name("lhs:POINTS");
@@ -152,6 +155,8 @@ void Parser::add_sweep() {
   sub.add_option("--shard", sweep.shard, "Only the I-th of N parts of the points")->type_name("I/N");
   add_repeatable(sub, "--merge", sweep.merge, "Take over the points of another database (repeatable)",
                  "FILE");
+  sub.add_flag("--rows", sweep.rows,
+               "Every point, not what they show together (CSV and JSON are always rows)");
   sub.add_flag("--dry-run", sweep.dry_run, "List the points, run nothing");
   add_report_file(sub, sweep.report);
   add_common(sub, sweep.common);

@@ -87,6 +87,7 @@ struct SweepArguments : RunArguments {
   std::string database = "sweep.sqlite";
   bool resume = false;
   bool dry_run = false;
+  bool rows = false;                 ///< every point in text, too, not what they show together
   std::optional<std::string> shard;  ///< "1/4"
   std::vector<std::string> merge;
 };

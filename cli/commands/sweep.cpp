@@ -10,6 +10,7 @@
 #include "cli/terminal/interrupt.h"
 #include "lab/base/messages.h"
 #include "lab/studies/axes.h"
+#include "lab/studies/sweep_findings.h"
 
 namespace hwsim::cli {
 namespace {
@@ -33,9 +34,57 @@ SweepJob job_of(const SweepArguments& options, const std::vector<std::string>& a
   return job;
 }
 
+/// A scene that is varied need not be given: it is the first one of its axis.
+SweepArguments with_scene(SweepArguments options) {
+  if (options.view.scene.empty())
+    for (const Axis& axis : parse_axes(options.vary))
+      if (axis.path == "scene") options.view.scene = axis.values.front();
+  return options;
+}
+
+std::string titled(const std::string& title, const Table& table) {
+  return table.rows.empty() ? "" : "\n" + title + "\n\n" + to_text(table);
+}
+
+std::string sentence(const SweepSummary& summary, const SweepFindings& found) {
+  std::string text =
+      fmt::format("{} points done, {} failed, {} left", summary.done, summary.failed, summary.left);
+  if (found.points == 0) return text + "\n";
+  text += fmt::format(": {:.4f} to {:.4f} ms", found.fastest_ms, found.slowest_ms);
+  if (found.frames > 1)
+    text += fmt::format(", {} frames (times below are their geometric means)", found.frames);
+  return text + "\n" + (found.best.empty() ? "" : "\nThe fastest\n\n");
+}
+
+/// What the points show together; `--rows` and other formats print every one.
+void print_findings(const SweepSummary& summary, const CommonArguments& common) {
+  const SweepFindings found = findings_of(summary.points);
+  print({.table = choice_table(found.best),
+         .heading = sentence(summary, found),
+         .footing = titled("Nobody is faster and closer to the reference", choice_table(found.front)) +
+                    titled("What mattered", effect_table(found.effects)) +
+                    "\n`--rows` prints every point, `--format csv` with all digits\n",
+         .json = nullptr},
+        common);
+}
+
+bool is_for_people(const FormatRequest& format) {
+  return format.format == OutputFormat::table || format.format == OutputFormat::md;
+}
+
+void print_answer(const SweepSummary& summary, const SweepArguments& options) {
+  CommonArguments findings = options.common, rows = options.common;
+  if (findings.formats.empty()) findings.formats = {FormatRequest{}};
+  std::erase_if(findings.formats, [&](const FormatRequest& f) { return options.rows || !is_for_people(f); });
+  std::erase_if(rows.formats, [&](const FormatRequest& f) { return !options.rows && is_for_people(f); });
+  if (!findings.formats.empty()) print_findings(summary, findings);
+  if (options.rows || !rows.formats.empty()) print_rows(summary.points, rows);
+}
+
 }  // namespace
 
-ExitStatus sweep(const SweepArguments& options, Context& context) {
+ExitStatus sweep(const SweepArguments& given, Context& context) {
+  const SweepArguments options = with_scene(given);
   const bool has_scene = !options.view.scene.empty();
   const SweepJob job = job_of(options, context.arguments);
   if (!has_scene && options.merge.empty() && !std::filesystem::exists(options.database))
@@ -55,7 +104,7 @@ ExitStatus sweep(const SweepArguments& options, Context& context) {
   }
   InterruptGuard guard("interrupted: finished points are kept, --resume goes on with the others");
   const SweepSummary summary = lab.sweep(plan, job);
-  print_rows(summary.points, options.common);
+  print_answer(summary, options);
   context.log.say(fmt::format("{} points done, {} failed, {} left, in {}", summary.done, summary.failed,
                               summary.left, summary.database));
   write_report(lab, options.report, context, [&] { return lab.report({options.database}); });

@@ -31,8 +31,12 @@ SharedFrames::~SharedFrames() {
 SceneView& Session::scene(const View& view) {
   for (const auto& scene : scenes_)
     if (scene->plan() == view) return *scene;
-  scenes_.push_back(std::make_unique<SceneView>(view, cache_, observer_));
+  scenes_.push_back(std::make_unique<SceneView>(view, cache_, observer_, &shelf_));
   return *scenes_.back();
+}
+
+void Session::release_scenes() {
+  for (const auto& scene : scenes_) scene->release();
 }
 
 const ReferenceImage& Session::reference(SceneView& scene, int samples, const ProgressFunction& progress) {
@@ -72,7 +76,8 @@ void Session::run(const RunPlan& given, RunSink& sink, StageProgress& progress) 
   }
   const RunContext run{plan, scene.summary(), reference};
   sink.begin(run);
-  Simulator simulator(plan, scene, reference, traces_, jobs_);
+  Simulator simulator(plan, scene, traces_);
+  if (reference) simulator.compare_with(*reference, image_errors_);
   const SharedFrames shared(std::span(&plan, 1), *this);
   for (const algos::TechniqueChoice& technique : plan.techniques)
     for (const GpuConfig& gpu : plan.gpus) {

@@ -46,10 +46,13 @@ class Session {
   int jobs() const { return jobs_; }
   const Cache& cache() const { return cache_; }
   TraceStore& traces() { return traces_; }
+  ImageErrors& image_errors() { return image_errors_; }
   ConfigFiles& files() { return files_; }
 
   /// Valid as long as the session. Throws InputError where the scene cannot be read.
   SceneView& scene(const View& view);
+  /// Gives the memory of all scenes back; they are loaded again when they are asked for.
+  void release_scenes();
 
   /// Ray-traced at the first call; valid as long as the session.
   const ReferenceImage& reference(SceneView& scene, int samples, const ProgressFunction& progress);
@@ -80,6 +83,8 @@ class Session {
   Cache cache_;
   TraceStore traces_;
   bool shares_frames_ = false;
+  ImageErrors image_errors_{jobs_};
+  SceneShelf shelf_;
   std::vector<std::unique_ptr<SceneView>> scenes_;
   std::vector<std::unique_ptr<KeptReference>> references_;
 };

@@ -57,10 +57,10 @@ PointResult Simulator::run(const algos::TechniqueChoice& technique, const GpuCon
   point.from_cache = frame.from_cache;
   if (!frame.in_memory) check_counts(point.emulation->trace);
   time_point(point, plan_);
-  if (reference_) {
-    if (!compared_) compared_.emplace(reference_->image, jobs_);
-    point.image_error = compared_->error_of(point.emulation->color, &point.flip_map);
-  }
+  if (!reference_) return point;
+  const ComparedImage& compared = errors_->of(point.emulation, *reference_);
+  point.image_error = compared.error;
+  point.flip_map = compared.flip_map;
   return point;
 }
 

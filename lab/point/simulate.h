@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cost_models/intervals.h"
+#include "lab/point/image_errors.h"
 #include "lab/store/reference_image.h"
 #include "lab/store/trace_store.h"
 #include "pipeline/image/metrics.h"
@@ -31,16 +32,19 @@ struct PointResult {
   cost_models::ErrorSources error_sources{};
   double timing_wall_s = 0.0;
   std::optional<pipeline::ImageError> image_error;
-  pipeline::Image flip_map;  ///< empty without a reference
+  std::shared_ptr<const pipeline::Image> flip_map{};  ///< null without a reference
 };
 
 /// Runs the points of one plan; GPUs that share a functional configuration share an emulation.
 class Simulator {
  public:
-  /// `jobs`: threads that compare images.
-  Simulator(const RunPlan& plan, SceneView& scene, const ReferenceImage* reference, TraceStore& store,
-            int jobs)
-      : plan_(plan), scene_(scene), reference_(reference), store_(store), jobs_(jobs) {}
+  Simulator(const RunPlan& plan, SceneView& scene, TraceStore& store)
+      : plan_(plan), scene_(scene), store_(store) {}
+  /// Points have errors of their images then. Both must outlive the simulator.
+  void compare_with(const ReferenceImage& reference, ImageErrors& errors) {
+    reference_ = &reference;
+    errors_ = &errors;
+  }
   /// Throws InputError, or InternalError when an invariant is violated.
   PointResult run(const algos::TechniqueChoice& technique, const GpuConfig& gpu,
                   const ProgressFunction& progress);
@@ -48,10 +52,9 @@ class Simulator {
  private:
   const RunPlan& plan_;
   SceneView& scene_;
-  const ReferenceImage* reference_;
   TraceStore& store_;
-  int jobs_;
-  std::optional<pipeline::ComparedReference> compared_;
+  const ReferenceImage* reference_ = nullptr;
+  ImageErrors* errors_ = nullptr;
 };
 
 /// Times the point's work on its GPU as the plan says, with the interval where the calibration knows the GPU.

@@ -118,13 +118,13 @@ class ReportSink : public RunSink {
     pictures.color = color_picture(emulation.color);
     pictures.heat =
         value_picture(emulation.shading_heat, static_cast<double>(largest(emulation.shading_heat)));
-    if (point.flip_map.pixels.empty()) return;
-    pictures.flip = value_picture(point.flip_map, 1.0);
+    if (!point.flip_map) return;
+    pictures.flip = value_picture(*point.flip_map, 1.0);
     const auto same_size = [&](const ShownImage& first) {
       return first.width == emulation.color.width && first.height == emulation.color.height;
     };
     if (images_.empty() || same_size(images_.front()))
-      images_.push_back(shown_image("", emulation.color, &point.flip_map));
+      images_.push_back(shown_image("", emulation.color, point.flip_map.get()));
   }
 
   Report& report_;

@@ -11,6 +11,7 @@
 #include "lab/base/messages.h"
 #include "lab/base/text.h"
 #include "lab/request/image_input.h"
+#include "lab/request/request_words.h"
 #include "lab/request/run_file.h"
 #include "pipeline/open/scene_source.h"
 
@@ -83,7 +84,8 @@ void check_generator_keys(const std::string& scene, const std::vector<Key>& view
 
 /// scene.* holds values of the view and, for a generated scene, the generator's own parameters; the generator
 /// checks the latter.
-void apply_to_view(View& view, const std::vector<Assignment>& sets, std::vector<Diagnostic>& problems) {
+void apply_to_view(View& view, const std::vector<Assignment>& sets, std::vector<Diagnostic>& problems,
+                   bool own_too = true) {
   const std::vector<Key> keys = settable(fields_of(view), "scene");
   std::vector<Assignment> own, generator;
   for (const Assignment& set : sets) {
@@ -91,7 +93,7 @@ void apply_to_view(View& view, const std::vector<Assignment>& sets, std::vector<
     const bool known = std::ranges::any_of(keys, [&](const Key& k) { return k.info.name == key_of(set); });
     (known || is_scene_file(view.scene) ? own : generator).push_back(set);
   }
-  apply_settings("scene", keys, own, problems);
+  if (own_too) apply_settings("scene", keys, own, problems);
   check_generator_keys(view.scene, keys, generator, problems);
   view.scene = with_parameters(view.scene, generator);
 }
@@ -150,8 +152,13 @@ Request open_request(const std::string& scene_or_run_file) {
   return request;
 }
 
-void apply(Request& request, const std::vector<Assignment>& sets, std::vector<Diagnostic>& problems) {
+void apply(Request& request, const std::vector<Assignment>& settings, std::vector<Diagnostic>& problems) {
+  const std::vector<Assignment> sets = without_words(settings);
   try {
+    const std::string scene = request.view.scene;
+    apply_words(request, settings);
+    const bool other_scene = request.view.scene != scene;  // the first one's name holds its parameters
+    if (other_scene) apply_to_view(request.view, request.sets, problems, false);
     check_groups(sets, std::vector<std::string>{"gpu", "scene", "technique", "emulator", "timing"});
   } catch (const InputError& error) {
     append(problems, error);

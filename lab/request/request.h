@@ -267,9 +267,10 @@ std::string key_text(const Settings& settings, FieldUse use);
 /// for a damaged file.
 Request open_request(const std::string& scene_or_run_file);
 
-/// Applies settings of the groups scene, emulator and timing to the request's values, adds parameters of a
-/// generated scene to its name, and keeps all of them in request.sets. Appends what is wrong to `problems`.
-void apply(Request& request, const std::vector<Assignment>& sets, std::vector<Diagnostic>& problems);
+/// Applies words (request_words.h) and settings of the groups scene, emulator and timing to the request's
+/// values, adds parameters of a generated scene to its name, and keeps all settings in request.sets. Appends
+/// what is wrong to `problems`.
+void apply(Request& request, const std::vector<Assignment>& settings, std::vector<Diagnostic>& problems);
 
 /// "l2_size_kib" of `gpu.l2_size_kib`.
 std::string key_of(const Assignment& set);

@@ -100,7 +100,7 @@ void PictureWriter::write(const std::string& folder, const PointResult& point,
   const auto encoded = reference_;
   add([=] { write_picture(folder + "/reference.png", encoded->png()); });
   add([=] { write_picture(folder + "/reference.exr", encoded->exr()); });
-  const auto flip = std::make_shared<const Image>(point.flip_map);
+  const auto flip = point.flip_map;
   add([=] { write_heat(folder + "/flip.png", *flip, 1.0f); });
   add([=] { write_picture(folder + "/flip.exr", pipeline::encode_exr(*flip)); });
 }

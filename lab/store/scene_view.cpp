@@ -176,8 +176,8 @@ std::optional<SceneSummary> remembered_summary(const std::string& path, const Ca
 
 }  // namespace
 
-SceneView::SceneView(View plan, const Cache& cache, Observer& observer)
-    : plan_(std::move(plan)), cache_(cache), free_camera_(free_camera(plan_.camera)) {
+SceneView::SceneView(View plan, const Cache& cache, Observer& observer, SceneShelf* shelf)
+    : plan_(std::move(plan)), cache_(cache), shelf_(shelf), free_camera_(free_camera(plan_.camera)) {
   if (is_image_file(plan_.scene)) {
     load_image();
     return;
@@ -187,9 +187,11 @@ SceneView::SceneView(View plan, const Cache& cache, Observer& observer)
     summary_ = std::move(*known);
   } else {
     const std::int64_t start_ns = now_ns();
+    const bool shared = shelf_ && shelf_->find(load_text());
     load();
     std::vector<FileStamp> stamps;
-    bool settled = true;  // a file written while it was read could differ from what its stamp says
+    // A file written while it was read, or since another view read it, could differ from what its stamp says.
+    bool settled = !shared;
     for (const std::string& file : scene_->files) {
       stamps.push_back(stamp_of(file));
       settled = settled && stamps.back().changed_ns < start_ns - kSettledNs;
@@ -210,12 +212,22 @@ int SceneView::adopt_camera() {
   return index;
 }
 
+std::string SceneView::load_text() const {
+  return fmt::format("{} memory {} exposure {} anisotropy {} alpha_test {}", plan_.scene, plan_.memory_mib,
+                     plan_.exposure, plan_.anisotropy, plan_.alpha_test);
+}
+
+void SceneView::release() {
+  if (!image_) scene_.reset();
+}
+
 void SceneView::load() {
   auto scene = std::make_shared<const pipeline::Scene>(
       pipeline::open_scene(plan_.scene, cache_.directory(CacheFolder::scenes), load_options(plan_)));
   summary_ = {scene->name, scene->content_hash, {}, scene->notes, pipeline::special_surfaces(*scene)};
   for (const pipeline::Camera& camera : scene->cameras) summary_.cameras.push_back(camera.name);
   scene_ = std::move(scene);
+  if (shelf_) shelf_->put(load_text(), scene_);
 }
 
 void SceneView::load_image() {

@@ -11,6 +11,7 @@
 #include "lab/base/observer.h"
 #include "lab/request/plan.h"
 #include "lab/store/cache.h"
+#include "lab/store/scene_shelf.h"
 #include "pipeline/image/image_io.h"
 
 namespace hwsim::lab {
@@ -25,9 +26,9 @@ struct SceneSummary {
 
 class SceneView {
  public:
-  /// Finds the camera by name or index, or makes one of words (free_camera.h). `cache` must outlive the view.
-  /// Throws InputError.
-  SceneView(View plan, const Cache& cache, Observer& observer);
+  /// Finds the camera by name or index, or makes one of words (free_camera.h). `cache` and `shelf`, which is
+  /// where other views' scenes are found, must outlive the view. Throws InputError.
+  SceneView(View plan, const Cache& cache, Observer& observer, SceneShelf* shelf = nullptr);
 
   const View& plan() const { return plan_; }
   const SceneSummary& summary() const { return summary_; }
@@ -35,6 +36,12 @@ class SceneView {
 
   /// Loaded at the first call.
   const std::shared_ptr<const pipeline::Scene>& scene();
+
+  /// Gives the scene's memory back; it is loaded again when it is asked for.
+  void release();
+
+  /// All that loading the scene depends on: views with one text share their scene.
+  std::string load_text() const;
 
   /// The frame without a GPU: features and limits are still to be set.
   algos::FrameRequest frame_request();
@@ -46,6 +53,7 @@ class SceneView {
 
   View plan_;
   const Cache& cache_;
+  SceneShelf* shelf_;
   SceneSummary summary_;
   std::optional<pipeline::Camera> free_camera_;  ///< none: one of the scene's
   int camera_ = 0;

@@ -11,6 +11,7 @@
 #include "lab/base/messages.h"
 #include "lab/base/table.h"
 #include "lab/base/text.h"
+#include "lab/request/request_words.h"
 
 namespace hwsim::lab {
 namespace {
@@ -69,6 +70,32 @@ void fill_range(Axis& axis, const std::string& text, const std::vector<std::stri
     axis.values.push_back(number_text(at_share(*axis.range, static_cast<double>(i) / (count - 1))));
 }
 
+void require_values(const Axis& axis, const std::string& text) {
+  for (const std::string& value : axis.values)
+    if (value.empty()) fail_axis(text, "a value is empty");
+}
+
+/// Throws InputError C020 for a path that is neither a setting's nor a word.
+Assignment parse_setting(const std::string& text) try {
+  return parse_assignment(text);
+} catch (const InputError& error) {
+  Diagnostic d = error.diagnostics().front();
+  const std::string path = text.substr(0, text.find('='));
+  if (path.find('.') == std::string::npos) d.hint = did_you_mean(path, request_words());
+  d.help =
+      fmt::format("--vary group.key=VALUES, or --vary WORD=VALUES with {}", fmt::join(request_words(), ", "));
+  throw InputError(d);
+}
+
+/// `resolution=640x360,1280x720`: a list of whole words, none of which is a range. None where the path is no
+/// word.
+std::optional<Axis> parse_word_axis(const std::string& text) {
+  const std::string path = text.substr(0, text.find('='));
+  if (!is_request_word(path) || path.size() == text.size()) return std::nullopt;
+  const std::string values = text.substr(path.size() + 1);
+  return Axis{path, path == "scene" ? split_techniques(values) : split(values, ','), {}};
+}
+
 /// SplitMix64 (Steele, Lea, Flood 2014): the distributions of <random> differ between libraries.
 class Random {
  public:
@@ -94,15 +121,18 @@ class Random {
 }  // namespace
 
 Axis parse_axis(const std::string& text) {
-  const Assignment assignment = parse_assignment(text);
+  if (auto words = parse_word_axis(text)) {
+    require_values(*words, text);
+    return std::move(*words);
+  }
+  const Assignment assignment = parse_setting(text);
   Axis axis{assignment.path, {}, {}};
   const std::vector<std::string> parts = split(assignment.value, ':');
   if ((axis.range = parse_range(text, parts.front())))
     fill_range(axis, text, parts);
   else
     axis.values = split(assignment.value, ',');
-  for (const std::string& value : axis.values)
-    if (value.empty()) fail_axis(text, "a value is empty");
+  require_values(axis, text);
   return axis;
 }
 

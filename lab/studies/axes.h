@@ -1,5 +1,6 @@
 #pragma once
-// `--vary path=a,b,c`, `path=lo..hi:n` and `path=lo..hi:n:log`, and the points that several of them span.
+// `--vary path=a,b,c`, `path=lo..hi:n` and `path=lo..hi:n:log`, and the points that several of them span. A
+// path is that of a setting, or a word of lab/request/request_words.h.
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -20,7 +21,7 @@ struct Axis {
   std::optional<Range> range;
 };
 
-/// Throws InputError U019.
+/// Throws InputError U019, and C020 for a path that is none.
 Axis parse_axis(const std::string& text);
 std::vector<Axis> parse_axes(const std::vector<std::string>& texts);
 

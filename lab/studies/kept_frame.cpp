@@ -66,7 +66,7 @@ KeptFrame kept_frame(const PointResult& point, const RunContext& run) {
   frame.plan.gpus = {*point.gpu};
   frame.from_cache = point.from_cache;
   frame.image_error = point.image_error;
-  if (point.image_error) frame.flip_map = std::make_shared<const pipeline::Image>(point.flip_map);
+  frame.flip_map = point.flip_map;
   return frame;
 }
 

@@ -82,7 +82,7 @@ std::string check_simulation(const TemporaryFolder& folder, Session& session) {
   for (const int jobs : {1, 2}) {
     TraceStore store({.jobs = jobs, .disk = false}, session.cache(), silent);
     const PointResult point =
-        Simulator(plan, scene, nullptr, store, jobs).run(plan.techniques.front(), plan.gpus.front(), nullptr);
+        Simulator(plan, scene, store).run(plan.techniques.front(), plan.gpus.front(), nullptr);
     images.push_back(point.emulation->color.pixels);
     samples = total(point.emulation->trace).stats.samples_passed;
     require(point.timing.time_ns > 0.0, "a frame takes no time");

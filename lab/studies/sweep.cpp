@@ -98,8 +98,14 @@ class SweepRunner {
  private:
   void run(const PlannedPoint& planned) {
     if (!is_quick(planned)) batch_.write();  // or a kill in its minutes would take results with it
+    if (scene_ && scene_->load_text() != planned.scene->load_text()) session_.release_scenes();
+    scene_ = planned.scene;
     try {
-      Simulator simulator(*planned.plan, *planned.scene, nullptr, session_.traces(), session_.jobs());
+      Simulator simulator(*planned.plan, *planned.scene, session_.traces());
+      if (planned.plan->reference_samples > 0)
+        simulator.compare_with(
+            session_.reference(*planned.scene, planned.plan->reference_samples, [](double, const auto&) {}),
+            session_.image_errors());
       batch_.add(planned.id, simulator.run(*planned.technique, planned.gpu, nullptr));
     } catch (const InputError& error) {
       if (error.diagnostics().front().code == "U021") throw;  // the database itself
@@ -111,12 +117,13 @@ class SweepRunner {
   bool is_quick(const PlannedPoint& planned) const {
     return planned.plan->engine != Engine::detailed &&
            session_.traces().holds(*planned.scene, *planned.technique, planned.gpu,
-                                   {planned.plan->skip, false});
+                                   {planned.plan->skip, planned.plan->reference_samples > 0});
   }
 
   SweepStore& store_;
   Session& session_;
   ResultBatch batch_;
+  const SceneView* scene_ = nullptr;  ///< the last point's
 };
 
 /// Frames that come next on one scene share passes.
@@ -142,7 +149,8 @@ class FramesAhead {
     }
     std::vector<TraceStore::WantedFrame> frames;
     for (const PlannedPoint& point : planned) frames.push_back({point.technique, &point.gpu});
-    session_.traces().expect(*planned.front().scene, frames, {planned.front().plan->skip, false});
+    const RunPlan& first = *planned.front().plan;
+    session_.traces().expect(*planned.front().scene, frames, {first.skip, first.reference_samples > 0});
   }
 
  private:

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint32_t kApplicationId = 0x68775357;  // "hwSW", in the header of the file
-constexpr std::uint32_t kSchemaVersion = 3;           // raised when a table or a column changes its meaning
+constexpr std::uint32_t kSchemaVersion = 4;           // raised when a table or a column changes its meaning
 
 constexpr const char* kSchema = R"(
 CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -33,7 +33,8 @@ CREATE TABLE point (
   settings TEXT NOT NULL, run_file TEXT NOT NULL, gpu_file TEXT NOT NULL,
   state TEXT NOT NULL, owner TEXT NOT NULL DEFAULT '', message TEXT NOT NULL DEFAULT '',
   time_ms REAL, lo_ms REAL, hi_ms REAL, support TEXT, limiter TEXT, dram_mb REAL, memory_mib REAL,
-  shaded_samples INTEGER, from_cache INTEGER) WITHOUT ROWID;
+  shaded_samples INTEGER, from_cache INTEGER,
+  flip_mean REAL, psnr_db REAL, ssim REAL) WITHOUT ROWID;
 CREATE TABLE pass (
   point_id TEXT NOT NULL REFERENCES point(id), ordinal INTEGER NOT NULL, name TEXT NOT NULL,
   kind TEXT NOT NULL, time_ms REAL NOT NULL, limiter TEXT NOT NULL, dram_mb REAL NOT NULL,

@@ -8,6 +8,8 @@
 
 #include "hwsim/base/content_hash.h"
 #include "lab/base/build_info.h"
+#include "lab/base/messages.h"
+#include "lab/request/request_words.h"
 #include "lab/request/run_file.h"
 
 namespace hwsim::lab {
@@ -17,7 +19,7 @@ constexpr std::size_t kMaxProblems = 20;
 constexpr std::size_t kMaxFailedPoints = 200;  // that may all have the same problem
 constexpr std::size_t kMaxGroups = 256;        // a plan and a few texts each
 
-bool is_of_gpu(const Assignment& set) { return set.group() == "gpu"; }
+bool is_of_gpu(const Assignment& set) { return set.path.starts_with("gpu."); }
 
 /// Whether the emulator may see another GPU.
 bool changes_work(const Assignment& set) {
@@ -60,8 +62,10 @@ class Problems {
 };
 
 std::string point_id(const std::string& work, const GpuConfig& gpu, const RunPlan& plan) {
-  const std::string text = fmt::format("model {}|{}|{}|{} {}", model_version(), work, content_hash(gpu),
-                                       engine_name(plan.engine), plan.timing.detailed_sample_ratio);
+  std::string text = fmt::format("model {}|{}|{}|{} {}", model_version(), work, content_hash(gpu),
+                                 engine_name(plan.engine), plan.timing.detailed_sample_ratio);
+  if (plan.reference_samples > 0)  // the error of the image is a result, too
+    text += fmt::format("|reference {} {}", plan.reference_samples, plan.view.reference_shadows);
   ContentHash hash;
   hash.add({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   return hash.hex().substr(0, 16);
@@ -76,12 +80,9 @@ std::vector<Assignment> joined(std::vector<Assignment> sets, const std::vector<A
 
 SweepPlan::SweepPlan(Request request, PointSettings settings, Session& session)
     : request_(std::move(request)), settings_(std::move(settings)), session_(&session) {
+  const std::vector<Assignment> first = settings_[0];
+  gpus_ = std::ranges::find(first, "gpu", &Assignment::path) == first.end() ? request_.gpus.size() : 1;
   Problems problems;
-  for (const std::string& overlay : request_.overlays) try {
-      overlay_files_.push_back(session.files().folder().overlay_file(overlay));
-    } catch (const InputError&) {  // told with the points
-      break;
-    }
   work_.reserve(settings_.size() * techniques() * gpus());
   for (std::size_t i = 0; i < settings_.size() && !problems.enough(); ++i) {
     const std::vector<Assignment> point = settings_[i];
@@ -98,11 +99,16 @@ SweepPlan::SweepPlan(Request request, PointSettings settings, Session& session)
 void SweepPlan::check(const std::vector<Assignment>& settings) {
   const Group& group = group_of(settings);
   std::vector<GpuConfig> configs;
-  for (std::size_t g = 0; g < gpus(); ++g) configs.push_back(gpu_of(g, settings));
+  for (std::size_t g = 0; g < gpus(); ++g) configs.push_back(gpu_of(group, g, settings));
   for (std::size_t t = 0; t < techniques(); ++t)
     for (std::size_t g = 0; g < gpus(); ++g) {
       const std::string work = work_of(group, t, g, configs[g], settings);
-      work_.push_back(works_.emplace(work, static_cast<std::uint32_t>(works_.size())).first->second);
+      const auto [known, is_new] = works_.emplace(work, static_cast<std::uint32_t>(works_.size()));
+      work_.push_back(known->second);
+      if (!is_new) continue;
+      const auto scene =
+          scenes_.emplace(group.scene->load_text(), static_cast<std::uint32_t>(scenes_.size())).first;
+      scene_of_work_.push_back(scene->second);
     }
 }
 
@@ -121,7 +127,11 @@ SweepPlan::Group SweepPlan::make_group(const std::vector<Assignment>& settings) 
   auto plan = std::make_shared<RunPlan>(make_plan(request, session_->files(), problems));
   plan->images = false;
   if (!problems.empty()) throw InputError(problems);
-  Group group{plan, &session_->scene(plan->view), {}, {}};
+  Group group{plan, &session_->scene(plan->view), request.gpus, {}, {}, {}};
+  if (group.gpus.size() != gpus_)
+    fail_usage("U019", "some points vary `gpu`, and others do not", "", "a list of GPUs for all points");
+  for (const std::string& overlay : request.overlays)
+    group.overlay_files.push_back(session_->files().folder().overlay_file(overlay));
   for (const algos::TechniqueChoice& technique : plan->techniques) {
     group.run_files.push_back(run_file_text(*plan, technique, "gpu.toml"));
     for (const GpuConfig& gpu : plan->gpus)
@@ -130,9 +140,10 @@ SweepPlan::Group SweepPlan::make_group(const std::vector<Assignment>& settings) 
   return group;
 }
 
-GpuConfig SweepPlan::gpu_of(std::size_t gpu, const std::vector<Assignment>& settings) const {
-  return session_->files().gpu(request_.gpus[gpu], overlay_files_, joined(request_.sets, settings),
-                               request_.settings.calibrated);
+GpuConfig SweepPlan::gpu_of(const Group& group, std::size_t gpu,
+                            const std::vector<Assignment>& settings) const {
+  return session_->files().gpu(group.gpus[gpu], group.overlay_files,
+                               joined(request_.sets, without_words(settings)), group.plan->calibrated);
 }
 
 std::string SweepPlan::work_of(const Group& group, std::size_t technique, std::size_t gpu,
@@ -146,7 +157,7 @@ PlannedPoint SweepPlan::operator[](std::size_t index) const {
   const std::size_t gpu = index % gpus(), technique = index / gpus() % techniques();
   std::vector<Assignment> settings = settings_[index / gpus() / techniques()];
   const Group& group = group_of(settings);
-  GpuConfig config = gpu_of(gpu, settings);
+  GpuConfig config = gpu_of(group, gpu, settings);
   std::string id = point_id(work_of(group, technique, gpu, config, settings), config, *group.plan);
   return {.id = std::move(id),
           .number = static_cast<std::int64_t>(index) + 1,
@@ -175,7 +186,8 @@ SweepPoint SweepPlan::row(std::size_t index) const {
 std::vector<std::uint32_t> SweepPlan::order() const {
   std::vector<std::uint32_t> order(size());
   std::iota(order.begin(), order.end(), std::uint32_t{0});
-  std::ranges::stable_sort(order, {}, [this](std::uint32_t i) { return work_[i]; });
+  std::ranges::stable_sort(order, {},
+                           [this](std::uint32_t i) { return std::pair(scene_of_work_[work_[i]], work_[i]); });
   return order;
 }
 
@@ -183,13 +195,15 @@ RowSource planned_rows(const SweepPlan& plan) {
   if (plan.size() == 0) return {};
   RowSource rows{{{"number", "#", true}, {"point_id", "point"}, {"technique", "technique"}, {"gpu", "GPU"}},
                  {}};
-  for (const Assignment& set : plan[0].settings) rows.columns.push_back({set.path, set.path, true});
+  for (const Assignment& set : plan[0].settings)
+    if (set.path != "gpu") rows.columns.push_back({set.path, set.path, true});
   rows.each = [&plan](const TakeRow& take) {
     for (std::size_t i = 0; i < plan.size(); ++i) {
       const PlannedPoint p = plan[i];
       std::vector<TableCell> row{static_cast<std::uint64_t>(p.number), p.id, technique_text(*p.technique),
                                  p.gpu.id};
-      for (const Assignment& set : p.settings) row.emplace_back(set.value);
+      for (const Assignment& set : p.settings)
+        if (set.path != "gpu") row.emplace_back(set.value);
       take(row);
     }
   };

@@ -47,25 +47,28 @@ class SweepPlan {
   struct Group {
     std::shared_ptr<const RunPlan> plan;
     SceneView* scene = nullptr;
+    std::vector<std::string> gpus, overlay_files;
     std::vector<std::string> run_files;  ///< by technique
     std::vector<std::string> works;      ///< what is emulated, by technique and GPU
   };
   const Group& group_of(const std::vector<Assignment>& settings) const;
   Group make_group(const std::vector<Assignment>& settings) const;
-  GpuConfig gpu_of(std::size_t gpu, const std::vector<Assignment>& settings) const;
+  GpuConfig gpu_of(const Group& group, std::size_t gpu, const std::vector<Assignment>& settings) const;
   std::string work_of(const Group& group, std::size_t technique, std::size_t gpu, const GpuConfig& config,
                       const std::vector<Assignment>& settings) const;
   void check(const std::vector<Assignment>& settings);
   std::size_t techniques() const { return request_.techniques.size(); }
-  std::size_t gpus() const { return request_.gpus.size(); }
+  std::size_t gpus() const { return gpus_; }
 
   Request request_{};
   PointSettings settings_{};
   Session* session_ = nullptr;
-  std::vector<std::string> overlay_files_{};
+  std::size_t gpus_ = 1;                           ///< for each list of settings
   mutable std::map<std::string, Group> groups_{};  ///< by their settings; not all that were ever used
   std::map<std::string, std::uint32_t> works_{};   ///< numbers of what is emulated
-  std::vector<std::uint32_t> work_{};              ///< by point
+  std::map<std::string, std::uint32_t> scenes_{};  ///< numbers of the scenes that are loaded for it
+  std::vector<std::uint32_t> scene_of_work_{};
+  std::vector<std::uint32_t> work_{};  ///< by point
 };
 
 /// The points as they are planned, nothing run.

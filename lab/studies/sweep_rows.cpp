@@ -54,9 +54,13 @@ constexpr std::array kPointColumns = {
     PointColumn{"dram_mb", "dram_mb", "DRAM MB", real, kMaxMegabytes, 2, true},
     PointColumn{"memory_mib", "memory_mib", "memory MiB", real, kMaxMegabytes, 1, true},
     PointColumn{"shaded_samples", "shaded_samples", "shaded samples", count, kMaxCount, 0, true},
+    PointColumn{"flip_mean", "flip_mean", "FLIP", real, 1.0, 4, true},
+    PointColumn{"psnr_db", "psnr_db", "PSNR dB", real, 1e3, 2, true},
+    PointColumn{"ssim", "ssim", "SSIM", real, 1.0, 4, true, -1.0},
     PointColumn{"message", "message", "message"}};
-constexpr int kId = 1, kSettings = kPointColumns.size();
-constexpr std::ptrdiff_t kSettingsPlace = 7;  ///< where what is varied stands in the table
+constexpr int kId = 1, kScene = 2, kSettings = kPointColumns.size();
+constexpr std::ptrdiff_t kErrors = 16, kErrorColumns = 3;  ///< where the errors of images stand
+constexpr std::ptrdiff_t kSettingsPlace = 7;               ///< where what is varied stands in the table
 
 std::string select_points() {
   std::string names;
@@ -138,23 +142,40 @@ class PointReader {
   Database::Statement select_;
 };
 
-/// Everything that is varied at some point, in order of appearance.
+/// What stands in a column of every sweep.
+bool has_own_column(const std::string& path) { return path == "gpu" || path == "scene"; }
+
+/// Everything else that is varied at some point, in order of appearance.
 std::vector<std::string> varied_paths(Database& database, const std::string& path) {
   std::vector<std::string> varied;
   PointReader points(database, path);
   while (points.step())
     for (const auto& [key, value] : points.settings())
-      if (std::ranges::find(varied, key) == varied.end()) varied.push_back(key);
+      if (!has_own_column(key) && std::ranges::find(varied, key) == varied.end()) varied.push_back(key);
   return varied;
 }
 
-std::vector<Column> columns_with(const std::vector<std::string>& varied) {
+/// Whether an image was compared with its reference at some point.
+bool has_errors(Database& database) {
+  Database::Statement select(database, "SELECT 1 FROM point WHERE flip_mean IS NOT NULL LIMIT 1");
+  return select.step();
+}
+
+/// Without the columns of errors where no point has one, then with what is varied.
+template <class Cell>
+void arrange(std::vector<Cell>& cells, bool with_errors, const std::vector<Cell>& varied) {
+  const auto errors = cells.begin() + kErrors;
+  if (!with_errors) cells.erase(errors, errors + kErrorColumns);
+  cells.insert(cells.begin() + kSettingsPlace, varied.begin(), varied.end());
+}
+
+std::vector<Column> columns_with(const std::vector<std::string>& varied, bool with_errors) {
   std::vector<Column> columns;
   for (const PointColumn& column : kPointColumns)
     columns.push_back({column.id, column.title, column.type == count || column.type == real});
   std::vector<Column> settings;
   for (const std::string& key : varied) settings.push_back({key, key, true});
-  columns.insert(columns.begin() + kSettingsPlace, settings.begin(), settings.end());
+  arrange(columns, with_errors, settings);
   return columns;
 }
 
@@ -162,17 +183,20 @@ std::vector<Column> columns_with(const std::vector<std::string>& varied) {
 
 RowSource point_rows(Database& database, const std::string& path) {
   const std::vector<std::string> varied = varied_paths(database, path);
+  const bool with_errors = has_errors(database);
   return {
-      columns_with(varied), [&database, path, varied](const TakeRow& take) {
+      columns_with(varied, with_errors), [&database, path, varied, with_errors](const TakeRow& take) {
         PointReader points(database, path);
         while (points.step()) {
           std::vector<TableCell> row = points.row(), cells;
           const NamedTexts settings = points.settings();
+          const auto scene = std::ranges::find(settings, "scene", &NamedTexts::value_type::first);
+          if (scene != settings.end()) row[kScene] = scene->second;  // a name may be that of several files
           for (const std::string& key : varied) {
             const auto found = std::ranges::find(settings, key, &NamedTexts::value_type::first);
             cells.push_back(found == settings.end() ? TableCell{NotApplicable{}} : TableCell{found->second});
           }
-          row.insert(row.begin() + kSettingsPlace, cells.begin(), cells.end());
+          arrange(row, with_errors, cells);
           take(row);
         }
       }};

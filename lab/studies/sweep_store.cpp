@@ -169,7 +169,9 @@ void SweepStore::finish(const std::string& id, const PointResult& result) {
       "UPDATE point SET state = 'done', owner = '', message = '', time_ms = ?, lo_ms = ?, hi_ms = ?, support "
       "= ?, "
       "limiter = "
-      "?, dram_mb = ?, memory_mib = ?, shaded_samples = ?, from_cache = ? WHERE id = ?");
+      "?, dram_mb = ?, memory_mib = ?, shaded_samples = ?, from_cache = ?, flip_mean = ?, psnr_db = ?, ssim "
+      "= ? WHERE id "
+      "= ?");
   update.bind(1, timing.time_ns / kNsPerMs).bind_null(2).bind_null(3).bind(4, support_name(timing.support));
   if (timing.interval_ns)
     update.bind(2, (*timing.interval_ns)[0] / kNsPerMs).bind(3, (*timing.interval_ns)[1] / kNsPerMs);
@@ -178,8 +180,13 @@ void SweepStore::finish(const std::string& id, const PointResult& result) {
       .bind(7, static_cast<double>(result.emulation->trace.peak_memory_bytes) / kBytesPerMib)
       .bind(8, signed_count(algos::shaded_samples(result.emulation->trace)))
       .bind(9, std::int64_t{result.from_cache})
-      .bind(10, id)
-      .run();
+      .bind_null(10)
+      .bind_null(11)
+      .bind_null(12)
+      .bind(13, id);
+  if (const auto& error = result.image_error)
+    update.bind(10, error->flip_mean).bind(11, error->psnr_db).bind(12, error->ssim);
+  update.run();
   prepared("DELETE FROM pass WHERE point_id = ?").bind(1, id).run();
   Database::Statement& insert = prepared("INSERT INTO pass VALUES (?, ?, ?, ?, ?, ?, ?)");
   std::int64_t ordinal = 0;
@@ -228,11 +235,12 @@ std::size_t SweepStore::merge(const std::string& path) {
   require_valid_rows(other, path);
   std::size_t taken = 0;
   Database::Transaction transaction(database_);
-  RowCopier points(other, database_, "point",
-                   {"id",       "number",     "scene",          "technique", "gpu",      "engine",
-                    "width_px", "height_px",  "settings",       "run_file",  "gpu_file", "state",
-                    "message",  "time_ms",    "lo_ms",          "hi_ms",     "support",  "limiter",
-                    "dram_mb",  "memory_mib", "shaded_samples", "from_cache"});
+  RowCopier points(
+      other, database_, "point",
+      {"id",         "number",    "scene",    "technique", "gpu",     "engine",     "width_px",
+       "height_px",  "settings",  "run_file", "gpu_file",  "state",   "message",    "time_ms",
+       "lo_ms",      "hi_ms",     "support",  "limiter",   "dram_mb", "memory_mib", "shaded_samples",
+       "from_cache", "flip_mean", "psnr_db",  "ssim"});
   RowCopier passes(other, database_, "pass",
                    {"point_id", "ordinal", "name", "kind", "time_ms", "limiter", "dram_mb"});
   Database::Statement all(other, "SELECT id, state FROM point");

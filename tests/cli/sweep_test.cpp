@@ -1,6 +1,8 @@
 // Many points in a database: every one there once, whatever interrupts.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -58,6 +60,53 @@ TEST_F(SweepTest, LatinHypercubeUsesEachStratumOnceAndRepeats) {
     EXPECT_EQ(*strata.begin(), 0);
     EXPECT_EQ(*strata.rbegin(), 19);
   }
+}
+
+// Words vary what flags say: the points are those of `run` with the flags.
+TEST_F(SweepTest, WordsVaryWhatFlagsSay) {
+  const Outcome outcome = place.hwsim(
+      "sweep -t msaa4x --vary scene=triangle.gltf,grass:blades=10 --vary resolution=64x48,32x32 --vary "
+      "gpu=gtx980,gtx470 --vary overlay=none,dram-x2+l2-x4 --reference 4 --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json rows = json::parse(outcome.out);
+  ASSERT_EQ(rows.size(), 16u);
+  const json& row = rows[15];
+  EXPECT_EQ(row["scene"], "grass:blades=10");
+  EXPECT_EQ(row["width_px"], 32u);
+  EXPECT_EQ(row["gpu"], "gtx470");
+  const Outcome run = place.hwsim(
+      "run grass:blades=10 --resolution 32x32 -g gtx470 --overlay dram-x2 --overlay l2-x4 -t msaa4x "
+      "--reference 4 "
+      "--no-image --json");
+  const json result = json::parse(run.out);
+  EXPECT_EQ(row["time_ms"], result["frame"]["time_ms"]);
+  EXPECT_EQ(row["flip_mean"], result["image"]["flip_mean"]);
+  EXPECT_EQ(row["psnr_db"], result["image"]["psnr_db"]);
+  EXPECT_EQ(row["ssim"], result["image"]["ssim"]);
+  EXPECT_NE(rows[0]["time_ms"], row["time_ms"]);
+  EXPECT_EQ(
+      json::parse(sweep("--vary gpu.l2_size_kib=512 --db plain.sqlite --json").out)[0].count("flip_mean"), 0u)
+      << "no error was asked for";
+}
+
+TEST_F(SweepTest, SharesItsPointsWithNobodyWhoAskedForNoErrors) {
+  ASSERT_EQ(sweep("--db a.sqlite").status, 0);
+  const json rows = points("--db a.sqlite --resume --reference 4");
+  ASSERT_EQ(rows.size(), 2u) << "a point without an error stays what it is";
+  EXPECT_TRUE(rows[0]["flip_mean"].is_null());
+  EXPECT_FALSE(rows[1]["flip_mean"].is_null());
+}
+
+TEST_F(SweepTest, ShowsWhatPointsSayTogetherAndRowsOnRequest) {
+  const Outcome found = sweep("-t none,msaa4x --vary gpu.core_clock_mhz=500..2000:40 --reference 4");
+  ASSERT_EQ(found.status, 0) << found.err;
+  for (const char* part : {"80 points done, 0 failed, 0 left: ", "The fastest", "What mattered",
+                           "gpu.core_clock_mhz", "Nobody is faster and closer to the reference"})
+    EXPECT_NE(found.out.find(part), std::string::npos) << part << found.out;
+  const auto lines = [](const std::string& text) { return std::ranges::count(text, '\n'); };
+  EXPECT_LT(lines(found.out), 30);
+  EXPECT_EQ(lines(place.hwsim("sweep --rows").out), 82) << "a title, a rule, and every point";
+  EXPECT_EQ(lines(place.hwsim("sweep --format csv").out), 81);
 }
 
 TEST_F(SweepTest, KilledAndResumedItEqualsAnUninterruptedOne) {
@@ -146,6 +195,12 @@ TEST_F(SweepTest, MistakesEndInMessages) {
   refused("triangle.gltf --sample lhs:0 --vary gpu.core_clock_mhz=1..2", 2, "U019");
   refused("triangle.gltf --sample sobol:4 --vary gpu.core_clock_mhz=1..2", 2, "U019");
   refused("triangle.gltf --shard 4/3", 2, "U003");
+  refused("triangle.gltf --vary resoltion=1x1", 3, "C020");
+  refused("triangle.gltf --vary resolution=1", 3, "U005");
+  refused("triangle.gltf --vary gpu=gtx980,gtx999", 3, "C016");
+  refused("triangle.gltf --vary overlay=dram-x3", 3, "U018");
+  refused("triangle.gltf --vary camera=0,7", 3, "U009");
+  refused("--vary scene=triangle.gltf,none.gltf", 3, "S001");
   refused("triangle.gltf --vary gpu.core_clock_mhz=1000,-1", 3, "C014");
   refused("triangle.gltf --db thesis.sqlite", 3, "U013");
   refused("triangle.gltf --db thesis.sqlite --resume", 3, "U021");

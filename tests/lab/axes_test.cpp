@@ -43,6 +43,17 @@ TEST(Axes, NoneSpanOnePointWithoutSettings) {
   }
 }
 
+TEST(Axes, WordsAreWholeAndNoRanges) {
+  EXPECT_EQ(parse_axis("resolution=640x360,1280x720").values,
+            (std::vector<std::string>{"640x360", "1280x720"}));
+  EXPECT_EQ(parse_axis("scene=../a..b.glb,grass:seed=3,blades=10,car_body").values,
+            (std::vector<std::string>{"../a..b.glb", "grass:seed=3,blades=10", "car_body"}));
+  EXPECT_EQ(parse_axis("overlay=none,l2-x4+rops-x2").values,
+            (std::vector<std::string>{"none", "l2-x4+rops-x2"}));
+  for (const char* wrong : {"gpu=", "camera=0,,1", "gpus=a", "resolution"})
+    EXPECT_THROW(parse_axis(wrong), InputError) << wrong;
+}
+
 TEST(Axes, LogarithmicRangesHaveEqualRatios) {
   const Axis axis = parse_axis("gpu.l2_size_kib=256..4096:5:log");
   EXPECT_EQ(axis.values, (std::vector<std::string>{"256", "512", "1024", "2048", "4096"}));
