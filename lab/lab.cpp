@@ -233,6 +233,14 @@ SweepSummary Lab::sweep(const SweepPlan& plan, const SweepJob& job) {
   return run_sweep(plan, job, *session_);
 }
 
+std::vector<PlannedWork> Lab::sweep_works(const SweepPlan& plan, std::size_t shards) {
+  return works_of(plan, shards, *session_);
+}
+
+EmulationSummary Lab::emulate_works(const SweepPlan& plan, const Shard& shard) {
+  return lab::emulate_works(plan, shard, *session_);
+}
+
 Reproduction Lab::reproduce(const std::string& paper) {
   const auto calibration = session_->files().calibration();
   const cost_models::Experiment experiment = load_experiment({paper}, *session_);

@@ -20,6 +20,7 @@
 #include "lab/studies/reproduction.h"
 #include "lab/studies/self_check.h"
 #include "lab/studies/sweep.h"
+#include "lab/studies/sweep_work.h"
 #include "lab/studies/validation.h"
 #include "lab/studies/variants.h"
 #include "lab/studies/variation.h"
@@ -93,6 +94,10 @@ class Lab {
   /// the lab.
   SweepPlan plan_sweep(const Request& request, PointSettings settings);
   SweepSummary sweep(const SweepPlan& plan, const SweepJob& job);
+  /// The frames that a sweep's points need, shared out among so many processes; and those of one of them,
+  /// emulated into the cache.
+  std::vector<PlannedWork> sweep_works(const SweepPlan& plan, std::size_t shards);
+  EmulationSummary emulate_works(const SweepPlan& plan, const Shard& shard);
 
   /// The tables of a paper, published beside predicted.
   Reproduction reproduce(const std::string& paper);

@@ -151,9 +151,17 @@ void Parser::add_sweep() {
   sub.add_option("--seed", sweep.seed, "Of the sample; default 1")->type_name("N");
   sub.add_option("--db", sweep.database, "The database; default sweep.sqlite")->type_name("FILE");
   sub.add_flag("--resume", sweep.resume, "Go on with a sweep: points that are done are kept");
-  sub.add_flag("--force", sweep.out.force, "Replace the sweep in --db");
+  sub.add_flag("--force", sweep.out.force, "Replace the sweep in --db, the file of --plan");
   sub.add_option("--shard", sweep.shard, "Only the I-th of N parts of the points")->type_name("I/N");
-  add_repeatable(sub, "--merge", sweep.merge, "Take over the points of another database (repeatable)",
+  sub.add_flag("--alone", sweep.alone,
+               "No other process works on --db: points that one was killed at, anywhere, are free");
+  sub.add_option("--plan", sweep.plan,
+                 "Write points and frames with their expected times (JSON); run nothing")
+      ->type_name("FILE");
+  sub.add_flag("--emulate-only", sweep.emulate_only,
+               "Only the frames that points need, into the cache; --shard takes its share of the work");
+  add_repeatable(sub, "--merge", sweep.merge,
+                 "Take over the points of other databases; 'part*.sqlite' names several (repeatable)",
                  "FILE");
   sub.add_flag("--rows", sweep.rows,
                "Every point, not what they show together (CSV and JSON are always rows)");

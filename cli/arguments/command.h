@@ -87,6 +87,9 @@ struct SweepArguments : RunArguments {
   std::string database = "sweep.sqlite";
   bool resume = false;
   bool dry_run = false;
+  bool alone = false;
+  std::string plan;                  ///< file of the plan; empty: none
+  bool emulate_only = false;         ///< frames into the cache, no points
   bool rows = false;                 ///< every point in text, too, not what they show together
   std::optional<std::string> shard;  ///< "1/4"
   std::vector<std::string> merge;

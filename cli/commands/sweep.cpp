@@ -8,6 +8,8 @@
 #include "cli/commands/report_file.h"
 #include "cli/terminal/answer.h"
 #include "cli/terminal/interrupt.h"
+#include "lab/base/files.h"
+#include "lab/base/json_text.h"
 #include "lab/base/messages.h"
 #include "lab/studies/axes.h"
 #include "lab/studies/sweep_findings.h"
@@ -27,11 +29,20 @@ SweepJob job_of(const SweepArguments& options, const std::vector<std::string>& a
   SweepJob job{.database = options.database,
                .resume = options.resume,
                .force = options.out.force,
+               .alone = options.alone,
                .shard = options.shard ? parse_shard(*options.shard) : Shard{},
                .merge = options.merge,
                .command_line = {}};
   for (const std::string& word : arguments) job.command_line += (job.command_line.empty() ? "" : " ") + word;
   return job;
+}
+
+void check_modes(const SweepArguments& options, bool has_scene) {
+  if ((options.emulate_only || !options.plan.empty()) && !has_scene)
+    fail_usage("U002", "--plan and --emulate-only need a scene", "", "the words of the sweep");
+  if (options.emulate_only && options.no_cache)
+    fail_usage("U003", "--emulate-only keeps frames in the cache, and --no-cache keeps none", "",
+               "one of them");
 }
 
 /// A scene that is varied need not be given: it is the first one of its axis.
@@ -68,6 +79,39 @@ void print_findings(const SweepSummary& summary, const CommonArguments& common) 
         common);
 }
 
+/// What shards have to do, in a line each.
+std::string shares(const std::vector<PlannedWork>& works, std::size_t shards) {
+  const std::vector<double> seconds = expected_seconds(works, shards);
+  double total = 0.0;
+  for (const double s : seconds) total += s;
+  std::string text = fmt::format("\n{} frames, about {:.1f} s of one core", works.size(), total);
+  if (shards > 1)
+    text += fmt::format("; {} shards of {:.1f} to {:.1f} s", shards, *std::ranges::min_element(seconds),
+                        *std::ranges::max_element(seconds));
+  return text + "\n";
+}
+
+ExitStatus write_plan(const SweepArguments& options, const SweepPlan& plan, std::size_t shards, Lab& lab) {
+  std::error_code error;
+  if (!options.out.force && std::filesystem::exists(options.plan, error))
+    fail("U013", "`" + options.plan + "` exists and is not overwritten", "",
+         "another file, or --force to replace it");
+  const std::vector<PlannedWork> works = lab.sweep_works(plan, shards);
+  write_answer(options.plan, json_text(to_json(plan, works)));
+  print({.table = work_table(works), .heading = {}, .footing = shares(works, shards), .json = nullptr},
+        options.common);
+  return ExitStatus::done;
+}
+
+ExitStatus emulate(const SweepPlan& plan, const Shard& shard, Lab& lab, Context& context) {
+  const EmulationSummary done = lab.emulate_works(plan, shard);
+  context.log.say(
+      fmt::format("{} frames emulated in {:.1f} s (expected {:.1f} s of one core), {} kept, {} failed, {} of "
+                  "other shards",
+                  done.emulated, done.wall_s, done.expected_s, done.kept, done.failed, done.others));
+  return done.failed > 0 ? ExitStatus::some_points_failed : ExitStatus::done;
+}
+
 bool is_for_people(const FormatRequest& format) {
   return format.format == OutputFormat::table || format.format == OutputFormat::md;
 }
@@ -90,6 +134,7 @@ ExitStatus sweep(const SweepArguments& given, Context& context) {
   if (!has_scene && options.merge.empty() && !std::filesystem::exists(options.database))
     fail_usage("U002", "no scene, and no database `" + options.database + "` to print", "",
                "`hwsim sweep --help` shows examples");
+  check_modes(options, has_scene);
   check_report_place(options.report, options.common.force);
   Lab lab(lab_options(options, context.log));
   SweepPlan plan;
@@ -98,6 +143,8 @@ ExitStatus sweep(const SweepArguments& given, Context& context) {
     context.log.say(
         fmt::format("plan: {}, {} points, database {}", options.view.scene, plan.size(), options.database));
   }
+  if (!options.plan.empty()) return write_plan(options, plan, job.shard.count, lab);
+  if (options.emulate_only) return emulate(plan, job.shard, lab, context);
   if (options.dry_run) {
     print_rows(planned_rows(plan), options.common);
     return ExitStatus::done;

@@ -1,5 +1,7 @@
 #include "lab/base/files.h"
 
+#include <glob.h>
+
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -42,6 +44,17 @@ void write_answer(const std::string& path, std::string_view text) {
 std::string read_file(const std::string& path) {
   const std::vector<std::uint8_t> bytes = pipeline::read_file(path, "U011", kMaxTextBytes);
   return std::string(bytes.begin(), bytes.end());
+}
+
+std::vector<std::string> matching_files(const std::string& pattern) {
+  std::error_code error;
+  if (std::filesystem::exists(pattern, error)) return {pattern};
+  glob_t found{};
+  std::vector<std::string> files;
+  if (::glob(pattern.c_str(), 0, nullptr, &found) == 0)
+    files.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+  ::globfree(&found);
+  return files;
 }
 
 std::string hash_hex(std::string_view bytes) { return fmt::format("{:016x}", fnv1a(bytes)); }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace hwsim::lab {
 
@@ -15,6 +16,9 @@ void write_answer(const std::string& path, std::string_view text);
 
 /// Throws InputError U011 when it cannot be read.
 std::string read_file(const std::string& path);
+
+/// The file of this name; else those that a pattern with `*`, `?` or `[...]` stands for, sorted. None: empty.
+std::vector<std::string> matching_files(const std::string& pattern);
 
 /// 64-bit FNV-1a as 16 hex digits: names of cached files, ids of runs. Not for untrusted keys.
 std::string hash_hex(std::string_view bytes);

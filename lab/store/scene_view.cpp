@@ -97,6 +97,7 @@ std::vector<std::uint8_t> encode(const SceneSummary& summary, const std::vector<
          {surface.blended, surface.emissive, surface.colored_emission, surface.unlit, surface.occluded})
       out.count(trait ? 1 : 0);
   }
+  out.count(summary.triangles);
   return out.take();
 }
 
@@ -123,6 +124,7 @@ std::optional<SceneSummary> decode(std::span<const std::uint8_t> bytes) {
          {&surface.blended, &surface.emissive, &surface.colored_emission, &surface.unlit, &surface.occluded})
       *trait = in.count() != 0;
   }
+  summary.triangles = in.count();
   in.expect_end();
   return summary;
 }
@@ -160,7 +162,7 @@ int find_camera(const SceneSummary& scene, const std::string& text) {
        fmt::format("cameras: index 0 to {}; names: {}", count - 1, fmt::join(scene.cameras, ", ")));
 }
 
-pipeline::SealKind summary_kind() { return {"summary", algos::source_digest()}; }
+pipeline::SealKind summary_kind() { return {"summary 2", algos::source_digest()}; }
 
 std::optional<SceneSummary> remembered_summary(const std::string& path, const Cache& cache,
                                                Observer& observer) {
@@ -222,9 +224,16 @@ void SceneView::release() {
 }
 
 void SceneView::load() {
-  auto scene = std::make_shared<const pipeline::Scene>(
-      pipeline::open_scene(plan_.scene, cache_.directory(CacheFolder::scenes), load_options(plan_)));
-  summary_ = {scene->name, scene->content_hash, {}, scene->notes, pipeline::special_surfaces(*scene)};
+  std::shared_ptr<const pipeline::Scene> scene = shelf_ ? shelf_->find(load_text()) : nullptr;
+  if (!scene)
+    scene = std::make_shared<const pipeline::Scene>(
+        pipeline::open_scene(plan_.scene, cache_.directory(CacheFolder::scenes), load_options(plan_)));
+  summary_ = {scene->name,
+              scene->content_hash,
+              {},
+              scene->notes,
+              pipeline::special_surfaces(*scene),
+              pipeline::stats(*scene).drawn_triangles};
   for (const pipeline::Camera& camera : scene->cameras) summary_.cameras.push_back(camera.name);
   scene_ = std::move(scene);
   if (shelf_) shelf_->put(load_text(), scene_);
@@ -235,7 +244,7 @@ void SceneView::load_image() {
   auto scene = std::make_shared<pipeline::Scene>();
   scene->name = fs::path(plan_.scene).stem().string();
   scene->content_hash = input.content_hash;
-  summary_ = {scene->name, scene->content_hash, {}, {}, {}};
+  summary_ = {scene->name, scene->content_hash, {}, {}, {}, 0};
   image_ = input.texels;
   plan_.resolution = {image_->width, image_->height};
   scene_ = std::move(scene);

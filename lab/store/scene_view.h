@@ -22,6 +22,7 @@ struct SceneSummary {
   std::vector<std::string> cameras;
   std::vector<Diagnostic> notes;
   std::vector<pipeline::SpecialSurface> surfaces;
+  std::uint64_t triangles = 0;  ///< that a frame draws, were all of them in view
 };
 
 class SceneView {

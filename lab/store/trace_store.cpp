@@ -156,6 +156,15 @@ bool TraceStore::holds(const SceneView& scene, const algos::TechniqueChoice& tec
   return in_memory(trace_key(work_text(scene, technique, gpu, needs)), needs.image) != nullptr;
 }
 
+bool TraceStore::is_kept(const SceneView& scene, const algos::TechniqueChoice& technique,
+                         const GpuConfig& gpu, const FrameNeeds& needs) const {
+  const std::string key = trace_key(work_text(scene, technique, gpu, needs));
+  if (in_memory(key, needs.image)) return true;
+  std::error_code error;
+  return options_.disk && std::filesystem::exists(frame_path(key), error) &&
+         (!needs.image || std::filesystem::exists(image_path(key), error));
+}
+
 std::vector<Diagnostic> TraceStore::problems(SceneView& scene, const algos::TechniqueChoice& technique,
                                              const GpuConfig& gpu, const FrameNeeds& needs) const try {
   const std::string key = trace_key(work_text(scene, technique, gpu, needs));

@@ -60,6 +60,10 @@ class TraceStore {
   bool holds(const SceneView& scene, const algos::TechniqueChoice& technique, const GpuConfig& gpu,
              const FrameNeeds& needs) const;
 
+  /// Whether the frame is in memory or on the disk.
+  bool is_kept(const SceneView& scene, const algos::TechniqueChoice& technique, const GpuConfig& gpu,
+               const FrameNeeds& needs) const;
+
   /// All that the work of a frame depends on, but the program itself, as text.
   static std::string work_text(const SceneView& scene, const algos::TechniqueChoice& technique,
                                const GpuConfig& gpu, const FrameNeeds& needs);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -11,6 +12,7 @@
 #include <utility>
 
 #include "lab/base/build_info.h"
+#include "lab/base/files.h"
 #include "lab/base/messages.h"
 #include "lab/base/text.h"
 
@@ -187,6 +189,21 @@ SweepAccess access_of(const SweepJob& job, bool has_points) {
   return job.merge.empty() ? SweepAccess::create : SweepAccess::go_on;
 }
 
+/// Files of their own names, and those that patterns stand for.
+std::vector<std::string> merged_files(const SweepJob& job) {
+  std::vector<std::string> files;
+  for (const std::string& pattern : job.merge) {
+    const std::vector<std::string> found = matching_files(pattern);
+    if (found.empty())
+      fail("U021", "there is no database `" + pattern + "`", "",
+           "the name of a database that `hwsim sweep` wrote");
+    std::error_code error;
+    for (const std::string& file : found)
+      if (file == pattern || !std::filesystem::equivalent(file, job.database, error)) files.push_back(file);
+  }
+  return files;
+}
+
 }  // namespace
 
 Shard parse_shard(const std::string& text) {
@@ -220,10 +237,12 @@ SweepSummary sweep_summary_from_json(const nlohmann::ordered_json& json) {
 
 SweepSummary run_sweep(const SweepPlan& plan, const SweepJob& job, Session& session) {
   SweepSummary summary{.database = job.database};
-  for (const std::string& other : job.merge) open_sweep(other, SweepAccess::look);  // before one is made
+  const std::vector<std::string> others = merged_files(job);
+  for (const std::string& other : others) open_sweep(other, SweepAccess::look);  // before one is made
   {
     SweepStore store(job.database, access_of(job, plan.size() > 0));
-    for (const std::string& other : job.merge)
+    if (job.alone) store.take_over();
+    for (const std::string& other : others)
       session.observer().say(fmt::format("merged {} points of {}", store.merge(other), other));
     if (plan.size() > 0) run_points(plan, job, store, session);
     const std::map<std::string, std::size_t> states = store.states();

@@ -21,9 +21,12 @@ struct SweepJob {
   std::string database{};
   bool resume = false;  ///< finished points of the database are kept
   bool force = false;   ///< a sweep's database is replaced
+  bool alone = false;   ///< no other process works on the database: points that one had claimed are free
   Shard shard{};
-  std::vector<std::string> merge{};  ///< other databases whose finished points are taken over first
-  std::string command_line{};        ///< remembered in the database
+  /// Other databases whose finished points are taken over first; `*`, `?` and `[...]` stand for names as in a
+  /// shell. The database itself is left out.
+  std::vector<std::string> merge{};
+  std::string command_line{};  ///< remembered in the database
 };
 
 struct SweepSummary {

@@ -39,7 +39,12 @@ class SweepPlan {
   /// What the database keeps of the point.
   SweepPoint row(std::size_t index) const;
 
-  /// All points, those that share an emulation one after another.
+  /// What is emulated for the points: how many frames there are, that of a point, the scene of a frame.
+  std::size_t works() const { return scene_of_work_.size(); }
+  std::uint32_t work_of(std::size_t index) const { return work_[index]; }
+  std::uint32_t scene_of(std::uint32_t work) const { return scene_of_work_[work]; }
+
+  /// All points, those of a scene and of an emulation one after another.
   std::vector<std::uint32_t> order() const;
 
  private:

@@ -84,6 +84,10 @@ void SweepStore::interrupt_ended() {
         .run();
 }
 
+void SweepStore::take_over() {
+  database_.execute("UPDATE point SET state = 'interrupted', owner = '' WHERE state = 'running'");
+}
+
 void SweepStore::add(std::size_t count, const std::function<SweepPoint(std::size_t)>& point_at) {
   constexpr std::size_t kTogether = 1000;  // others wait for a transaction, so that it is short
   interrupt_ended();

@@ -39,6 +39,8 @@ class SweepStore {
 
   /// Points that are new become pending; those whose process has ended while they ran become interrupted.
   void add(std::size_t count, const std::function<SweepPoint(std::size_t)>& point_at);
+  /// Points that any process has claimed are free again: for who knows that no other one works here.
+  void take_over();
   void remember(const std::string& key, const std::string& value);
 
   std::string state_of(const std::string& id);

@@ -134,6 +134,40 @@ TEST_F(SweepTest, ShardsMergeToTheWhole) {
   EXPECT_EQ(merged.out, whole.out);
 }
 
+// A plan says what there is to do; shards of the work do it; points find it done, wherever they run.
+TEST_F(SweepTest, EmulationsComeFirstInShardsOfEqualWork) {
+  const std::string axes =
+      "-t none,msaa4x,ssaa4x --vary resolution=64x48,320x200,640x400 --vary gpu.l2_size_kib=512,1024 ";
+  const auto sweep = [&](const std::string& flags) {
+    return place.hwsim("sweep triangle.gltf --resolution 64x48 " + flags, "HWSIM_CACHE=cache ");
+  };
+  ASSERT_EQ(sweep(axes + "--plan plan.json --shard 1/2").status, 0);
+  const json plan = json::parse(place.read("plan.json"));
+  ASSERT_EQ(plan["works"].size(), 9u) << "L2 changes no work";
+  ASSERT_EQ(plan["points"].size(), 18u);
+  std::map<int, double> seconds;
+  double largest = 0.0;
+  for (const json& work : plan["works"]) {
+    EXPECT_EQ(work["points"], 2u);
+    EXPECT_EQ(work["kept"], "no");
+    seconds[work["shard"].get<int>()] += work["expected_s"].get<double>();
+    largest = std::max(largest, work["expected_s"].get<double>());
+  }
+  ASSERT_EQ(seconds.size(), 2u);
+  EXPECT_LE(std::abs(seconds[1] - seconds[2]), largest);
+  EXPECT_EQ(sweep(axes + "--plan plan.json").status, 3) << "it is there already";
+
+  const Outcome first = sweep(axes + "--emulate-only --shard 1/2"),
+                second = sweep(axes + "--emulate-only --shard 2/2");
+  ASSERT_EQ(first.status + second.status, 0) << first.err << second.err;
+  EXPECT_NE(sweep(axes + "--emulate-only").err.find(" 9 kept, 0 failed"), std::string::npos);
+  EXPECT_EQ(place.listing(), "cache plan.json triangle.gltf") << "no database";
+  for (const json& work : json::parse((sweep(axes + "--plan again.json"), place.read("again.json")))["works"])
+    EXPECT_EQ(work["kept"], "yes");
+  EXPECT_EQ(place.hwsim("sweep --emulate-only").status, 2);
+  EXPECT_EQ(sweep("--emulate-only --no-cache").status, 2);
+}
+
 TEST_F(SweepTest, FailedPointsAreKeptWithTheirReasonAndEndIn5) {
   const Outcome outcome = sweep("-t none,msaa8x --vary gpu.features.native_msaa_max=4,8 --json");
   EXPECT_EQ(outcome.status, 5) << outcome.err;

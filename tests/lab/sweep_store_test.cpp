@@ -206,6 +206,30 @@ TEST_F(SweepStoreTest, PointOfALivingProcessIsNotClaimed) {
   EXPECT_EQ(a.claim(all), (std::vector<bool>{false, true, false})) << "what this process has, it keeps";
 }
 
+// A task of a cluster that comes again on another node: only it knows that its database is its own.
+TEST_F(SweepStoreTest, WhoWorksAloneTakesOverPointsOfOtherMachines) {
+  make("a.db", {{"p1", 0.0}, {"p2", 1e6}});
+  SweepStore a(path("a.db"), SweepAccess::go_on);
+  Database(path("a.db"), Database::Mode::write)
+      .execute("UPDATE point SET state = 'running', owner = 'another-machine 1 2' WHERE id = 'p1'");
+  EXPECT_EQ(a.claim(std::vector<std::string>{"p1"}), std::vector{false});
+  a.take_over();
+  EXPECT_EQ(a.state_of("p1"), "interrupted");
+  EXPECT_EQ(a.claim(std::vector<std::string>{"p1", "p2"}), (std::vector{true, false})) << "p2 stays done";
+}
+
+TEST_F(SweepStoreTest, PatternsNameTheDatabasesToMerge) {
+  make("part1.db", {{"p1", 1e6}});
+  make("part2.db", {{"p2", 2e6}});
+  make("other.db", {{"p3", 3e6}});
+  const SweepSummary merged = Lab().sweep({}, {.database = path("part9.db"), .merge = {path("part*.db")}});
+  EXPECT_EQ(merged.done, 2u);
+  EXPECT_EQ(Lab().sweep({}, {.database = path("part9.db"), .merge = {path("part*.db")}}).done, 2u)
+      << "the pattern names the database itself, too";
+  EXPECT_EQ(code_of([&] { Lab().sweep({}, {.database = path("b.db"), .merge = {path("none*.db")}}); }),
+            "U021");
+}
+
 TEST_F(SweepStoreTest, ManyProcessesOpenAndCloseOneDatabase) {
   make("a.db", {{"p1", 0.0}});
   constexpr int kProcesses = 8, kTimes = 25;
