@@ -202,15 +202,33 @@ Ranking Lab::rank(const Request& request, const std::string& budget, RunSink* si
   return rank(make_plan(request, session_->files()), budget, sink, contact_sheet);
 }
 
-Ranking Lab::rank(const RunPlan& given, const std::string& budget, RunSink* sink,
+Ranking Lab::rank(const RunPlan& plan, const std::string& budget, RunSink* sink,
                   pipeline::Image* contact_sheet) {
-  const RunPlan plan = ranking_plan(given);
-  RankingSink ranking(budget);
-  Fork fork(ranking, sink);
-  StageProgress progress(session_->observer(), Session::stages(plan));
-  session_->run(plan, fork, progress);
-  if (contact_sheet && plan.images) *contact_sheet = ranking.sheet();
-  return ranking.ranking();
+  if (plan.gpus.size() != 1) fail_usage("U004", "one ranking is of one GPU", "", "one --gpu");
+  std::vector<pipeline::Image> sheets;
+  std::vector<Ranking> rankings =
+      rank_each({plan}, {.budget = budget}, sink, contact_sheet ? &sheets : nullptr);
+  if (contact_sheet && !sheets.empty()) *contact_sheet = std::move(sheets.front());
+  return std::move(rankings.front());
+}
+
+std::vector<Ranking> Lab::rank_each(const std::vector<RunPlan>& given, const RankQuestion& question,
+                                    RunSink* sink, std::vector<pipeline::Image>* contact_sheets,
+                                    const std::function<void(std::size_t)>& begin_view) {
+  std::vector<RunPlan> plans;
+  std::size_t stages = 0;
+  for (const RunPlan& plan : given) stages += Session::stages(plans.emplace_back(ranking_plan(plan)));
+  StageProgress progress(session_->observer(), stages);
+  std::vector<Ranking> rankings;
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    if (begin_view) begin_view(i);
+    RankingSink ranking(question);
+    Fork fork(ranking, sink);
+    session_->run(plans[i], fork, progress);
+    if (contact_sheets && plans[i].images) contact_sheets->push_back(ranking.sheet());
+    for (Ranking& found : ranking.rankings()) rankings.push_back(std::move(found));
+  }
+  return rankings;
 }
 
 std::vector<Explanation> Lab::explain(const Request& request) {

@@ -86,6 +86,14 @@ class Lab {
   Ranking rank(const RunPlan& plan, const std::string& budget = {}, RunSink* sink = nullptr,
                pipeline::Image* contact_sheet = nullptr);
 
+  /// The same in several views and on all GPUs of each plan: a ranking for each, in this order. Images are
+  /// drawn and compared once for all GPUs that share a frame. `begin_view` is told of each plan before it
+  /// runs; `contact_sheets` receives one a plan.
+  std::vector<Ranking> rank_each(const std::vector<RunPlan>& plans, const RankQuestion& question,
+                                 RunSink* sink = nullptr,
+                                 std::vector<pipeline::Image>* contact_sheets = nullptr,
+                                 const std::function<void(std::size_t)>& begin_view = {});
+
   /// Why each technique takes its time on each GPU.
   std::vector<Explanation> explain(const Request& request);
   std::vector<Explanation> explain(const RunPlan& plan);

@@ -135,6 +135,10 @@ void Parser::add_rank() {
   add_no_image(sub, rank);
   sub.add_option("--budget", rank.budget, "Limits of aa_ms, frame_ms, extra_mib, memory_mib, dram_mb")
       ->type_name("LIMITS");
+  sub.add_option("--metric", rank.metric, "The error of the image that orders techniques; default flip")
+      ->type_name("flip|psnr|ssim");
+  sub.add_flag("--edges", rank.edges, "Errors where the reference has edges alone, for flip and psnr");
+  add_vary(sub, rank.vary, rank.zip);
   add_out(sub, rank.out);
   add_report_file(sub, rank.report);
   add_common(sub, rank.common);

@@ -76,6 +76,10 @@ struct ExplainArguments : RunArguments {
 /// Techniques under a budget.
 struct RankArguments : RunArguments {
   std::string budget;  ///< "aa_ms<=1.5, extra_mib<=192"
+  std::string metric = "flip";
+  bool edges = false;
+  std::vector<std::string> vary;  ///< views
+  bool zip = false;
 };
 
 /// Many points in a database.

@@ -39,15 +39,27 @@ void enlarge(Image& sheet, int left, int top, const Region& region, const Functi
       sheet.at(left + x, top + y) = color(region.x + x / kZoom, region.y + y / kZoom);
 }
 
-/// Sums of all rectangles from the corner: the error of any square in four reads.
+/// How much the errors of the images differ at a pixel: their variance; with one image, its error.
+double difference_at(std::span<const ShownImage> images, size_t pixel) {
+  double sum = 0.0, squares = 0.0, count = 0.0;
+  for (const ShownImage& image : images) {
+    if (image.error.empty()) continue;
+    const double error = image.error[pixel];
+    sum += error;
+    squares += error * error;
+    count += 1.0;
+  }
+  return count > 1.0 ? std::max(0.0, squares / count - (sum / count) * (sum / count)) : sum;
+}
+
+/// Sums of all rectangles from the corner: the difference within any square in four reads.
 std::vector<double> summed_area(std::span<const ShownImage> images, int width, int height) {
   const auto stride = static_cast<size_t>(width) + 1;
   std::vector<double> sums(stride * (static_cast<size_t>(height) + 1), 0.0);
   for (size_t y = 0; y < static_cast<size_t>(height); ++y) {
     double row = 0.0;
     for (size_t x = 0; x < static_cast<size_t>(width); ++x) {
-      for (const ShownImage& image : images)
-        if (!image.error.empty()) row += image.error[y * static_cast<size_t>(width) + x];
+      row += difference_at(images, y * static_cast<size_t>(width) + x);
       sums[(y + 1) * stride + x + 1] = sums[y * stride + x + 1] + row;
     }
   }

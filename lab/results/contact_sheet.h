@@ -1,5 +1,5 @@
 #pragma once
-// Crops of every technique side by side, where the techniques err most.
+// Crops of every technique side by side, where the techniques differ most.
 #include <cstdint>
 #include <span>
 #include <string>
@@ -23,8 +23,9 @@ struct Region {
   int x = 0, y = 0, side = 0;
 };
 
-/// The squares with the largest error summed over all images, the worst first, none overlapping another.
-/// Fewer than `count` where the images have no room for more.
+/// The squares in which the errors of the images differ most, the worst first, none overlapping another: the
+/// largest sums over pixels of the variance of their errors. With one image, those where it errs most. Fewer
+/// than `count` where the images have no room for more.
 std::vector<Region> worst_regions(std::span<const ShownImage> images, int side, int count);
 
 /// A row an image: its label, the regions enlarged, and their error maps (black 0, white 1).

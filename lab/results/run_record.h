@@ -31,6 +31,9 @@ class RunRecord : public RunSink {
   /// Throws InputError as RunDirectory does.
   RunRecord(const OutPlace& place, Subject subject);
 
+  /// Folders of the points that come are called by their view, too.
+  void enter(const std::string& view) { view_ = view + "-"; }
+
   void begin(const RunContext& run) override;
   /// Throws InputError where files cannot be written: pictures of this point or an earlier one, or commit()
   /// does.
@@ -53,6 +56,7 @@ class RunRecord : public RunSink {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   RunDirectory directory_;
   PictureWriter pictures_;
+  std::string view_;
   std::optional<SceneSummary> scene_;
   std::uint64_t fragments_ = 0;
   double emulation_s_ = 0.0;

@@ -95,6 +95,52 @@ TEST_F(RankTest, SheetShowsTheWorstRegions) {
   }
 }
 
+// Two GPUs in two views: what each ranking says is what a run for it alone says, and each image is drawn
+// once.
+TEST_F(RankTest, SeveralGpusAndViewsAreARankingEach) {
+  const Outcome outcome = place.hwsim(
+      "rank triangle.gltf -t msaa4x -g gtx980,rtx4090 --vary resolution=96x64,48x32 --reference 4 --force "
+      "--out "
+      "result --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json all = json::parse(outcome.out);
+  ASSERT_EQ(all["rankings"].size(), 4u);
+  EXPECT_EQ(all["rankings"][1]["gpu"], "rtx4090");
+  EXPECT_EQ(all["rankings"][2]["resolution"], json({48, 32}));
+  EXPECT_EQ(all["overall"].size(), 2u);
+  EXPECT_EQ(all["overall"][0]["technique"], "msaa4x") << "the closer one";
+  EXPECT_EQ(place.listing("result").substr(0, 7), "log.txt");
+  EXPECT_NE(place.listing("result").find("resolution-48x32-contact_sheet.png"), std::string::npos)
+      << place.listing("result");
+  EXPECT_NE(place.listing("result").find("resolution-48x32-msaa4x@rtx4090"), std::string::npos);
+  const json alone = rank("-t msaa4x -g rtx4090 --no-image");
+  EXPECT_EQ(all["rankings"][1]["techniques"], alone["techniques"]);
+}
+
+TEST_F(RankTest, GpuWithoutAnIntervalIsUnknownUnderABudgetOfTime) {
+  const auto rows = by_name(rank("-t msaa4x -g rtx4090 --no-image --budget 'frame_ms<=1000'"));
+  EXPECT_EQ(rows.at("msaa4x")["verdict"], "unknown");
+  EXPECT_EQ(by_name(rank("-t msaa4x -g gtx980 --no-image --budget 'frame_ms<=1000'")).at("msaa4x")["verdict"],
+            "ok");
+}
+
+TEST_F(RankTest, MetricAndEdgesOrderTechniques) {
+  for (const std::string metric : {"flip", "psnr", "ssim"}) {
+    const json result = rank("-t none,msaa2x,msaa8x --no-image --metric " + metric);
+    const std::string column = metric == "flip" ? "flip_mean" : metric == "psnr" ? "psnr_db" : "ssim";
+    const double sign = metric == "flip" ? 1.0 : -1.0;
+    for (std::size_t i = 1; i < result["techniques"].size(); ++i)
+      EXPECT_GE(sign * result["techniques"][i][column].get<double>(),
+                sign * result["techniques"][i - 1][column].get<double>())
+          << metric;
+  }
+  const auto rows = by_name(rank("-t msaa4x --no-image --edges --metric psnr"));
+  const json& none = rows.at("none");
+  EXPECT_LT(none["edge_psnr_db"].get<double>(), none["psnr_db"].get<double>())
+      << "the triangle errs at its edges";
+  EXPECT_GT(none["edge_flip_mean"].get<double>(), none["flip_mean"].get<double>());
+}
+
 TEST_F(RankTest, MistakesEndInMessages) {
   const auto refused = [&](const std::string& arguments, const std::string& code) {
     const Outcome outcome = place.hwsim("rank triangle.gltf " + arguments);
@@ -103,7 +149,9 @@ TEST_F(RankTest, MistakesEndInMessages) {
   };
   for (const char* budget : {"'aa_ms<1'", "'aa_ms<=x'", "'am_ms<=1'", "'aa_ms<=1,'", "'<=1'", "'aa_ms<=nan'"})
     refused("--budget " + std::string(budget), "U022");
-  refused("-g gtx980 -g gtx470", "U004");
+  refused("--vary gpu.core_clock_mhz=1,2", "U004");
+  refused("--metric psrn", "U003");
+  refused("--metric ssim --edges", "U003");
   EXPECT_EQ(place.listing(), "triangle.gltf");
 }
 
