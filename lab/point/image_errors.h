@@ -32,7 +32,7 @@ class ImageErrors {
   };
   int jobs_;
   const ReferenceImage* side_of_ = nullptr;
-  std::optional<pipeline::ComparedReference> side_;  ///< of the last reference: what each comparison needs of it
+  std::optional<pipeline::ComparedReference> side_;  ///< the last reference, prepared for comparisons
   std::vector<Kept> kept_;                           ///< the newest last
   std::size_t computed_ = 0;
 };

@@ -13,7 +13,8 @@ void RunRecord::begin(const RunContext& run) { scene_ = run.scene; }
 void RunRecord::point(const PointResult& point, const RunContext& run) {
   const bool alone = run.plan.techniques.size() * run.plan.gpus.size() == 1;
   const bool in_front = alone && subject_.layout == Layout::automatic;
-  const std::string folder = in_front ? directory_.partial().string() : directory_.path(view_ + point_folder(point));
+  const std::string folder =
+      in_front ? directory_.partial().string() : directory_.path(view_ + point_folder(point));
   write_point_files(folder, point, run.plan, run.scene.name);
   if (run.plan.images) pictures_.write(folder, point, run.reference);
   if (point.from_cache) return;

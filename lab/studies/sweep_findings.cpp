@@ -14,15 +14,10 @@ namespace hwsim::lab {
 namespace {
 
 constexpr std::size_t kBest = 5, kFrontMost = 20;
-constexpr std::size_t kBins = 8;  // of an axis that has more values than this, and half as many again
+constexpr std::size_t kBins =
+    8;  // an axis with more values than 1.5 times this many is shown by so many bins
 
 using Row = std::vector<TableCell>;
-
-std::string text_of(const TableCell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell)) return *text;
-  if (const auto* count = std::get_if<std::uint64_t>(&cell)) return std::to_string(*count);
-  return "";
-}
 
 std::optional<double> number_of(const TableCell& cell) {
   const auto* real = std::get_if<Real>(&cell);

@@ -14,9 +14,9 @@
 
 namespace hwsim::pipeline {
 
-/// A digest of values. A struct takes part by a function `add_content(ContentDigest&, const T&)` beside it, which
-/// names all its members by a structured binding, so that a new one that is forgotten does not compile; one without
-/// padding and floats by its bytes.
+/// A digest of values. A struct takes part by a function `add_content(ContentDigest&, const T&)` beside it,
+/// which names all its members by a structured binding, so that a new one that is forgotten does not compile;
+/// one without padding and floats by its bytes.
 class ContentDigest {
  public:
   using Words = std::array<std::uint64_t, 2>;
@@ -80,7 +80,9 @@ class ContentDigest {
 };
 
 template <class T>
-concept HasContent = requires(ContentDigest& digest, const T& value) { add_content(digest, value); };
+concept HasContent = requires(ContentDigest& digest, const T& value) {
+  add_content(digest, value);
+};
 
 /// Uniforms of any type.
 class Uniforms {
@@ -88,7 +90,8 @@ class Uniforms {
   Uniforms() = default;
   Uniforms(std::nullptr_t /*none*/) {}  // NOLINT
   template <class T>
-  Uniforms(std::shared_ptr<T> data) : data_(std::move(data)), add_(adder<std::remove_const_t<T>>()) {}  // NOLINT
+  Uniforms(std::shared_ptr<T> data)
+      : data_(std::move(data)), add_(adder<std::remove_const_t<T>>()) {}  // NOLINT
 
   const void* get() const { return data_.get(); }
   explicit operator bool() const { return data_ != nullptr; }
@@ -111,7 +114,9 @@ class Uniforms {
     else if constexpr (std::is_empty_v<T>)
       return [](ContentDigest&, const void*) {};
     else if constexpr (HasContent<T>)
-      return [](ContentDigest& digest, const void* value) { add_content(digest, *static_cast<const T*>(value)); };
+      return [](ContentDigest& digest, const void* value) {
+        add_content(digest, *static_cast<const T*>(value));
+      };
     else
       return nullptr;
   }

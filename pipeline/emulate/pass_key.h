@@ -1,5 +1,6 @@
 #pragma once
-// Keys of a frame's passes: two passes with one key do the same work on the same contents, and leave the same.
+// Keys of a frame's passes: two passes with one key do the same work on the same contents, and leave the
+// same.
 #include <vector>
 
 #include "pipeline/batch/uniforms.h"
@@ -9,8 +10,8 @@ namespace hwsim::pipeline {
 
 using Digest = ContentDigest::Words;
 
-/// What a pass does with memory, as digests of how each content came about: what it is made of, and every pass
-/// that has touched it since, readers too, since they may change the form in which it is held.
+/// What a pass does with memory, as digests of how each content came about: what it is made of, and every
+/// pass that has touched it since, readers too, since they may change the form in which it is held.
 struct KeyedPass {
   Digest key;
   std::vector<int> images, buffers;   ///< that it touches, each once

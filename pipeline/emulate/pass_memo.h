@@ -29,12 +29,12 @@ struct PassResult {
   ReuseProfile reuse;
   int raster_samples = 1;
   SkipCounts skipped;
-  std::vector<std::uint32_t> heat;  ///< what it added to each pixel; empty: nothing
+  std::vector<std::uint32_t> heat;             ///< what it added to each pixel; empty: nothing
   std::vector<std::uint64_t> untouched_tiles;  ///< after it, in each image that it touched
 };
 
-/// Holds only what a frame that is expected will ask for, and no more than its limit of images and buffers: a pass
-/// whose images there was no room for is emulated again. Not for several threads at a time.
+/// Holds only what a frame that is expected will ask for, and no more than its limit of images and buffers: a
+/// pass whose images there was no room for is emulated again. Not for several threads at a time.
 class PassMemo {
  public:
   explicit PassMemo(std::uint64_t limit_bytes) : limit_bytes_(limit_bytes) {}

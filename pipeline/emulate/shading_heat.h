@@ -12,8 +12,8 @@ class ShadingHeat {
  public:
   ShadingHeat(int width, int height);
 
-  /// Lets the pass count. Shading at a multiple of the frame's size (supersampling) counts for the pixel that it
-  /// ends in; other sizes (shadow maps) do not count.
+  /// Lets the pass count. Shading at a multiple of the frame's size (supersampling) counts for the pixel that
+  /// it ends in; other sizes (shadow maps) do not count.
   void attach(PassContext& context);
   Image image(int jobs) const;
 

@@ -20,7 +20,7 @@ std::uint64_t held_bytes(const GpuImage& image) {
 SharedPasses::SharedPasses(PassMemo* memo, const FrameGraph& graph, const CompiledGraph& compiled,
                            const FunctionalConfig& functional, const EmulationOptions& options)
     : memo_(memo != nullptr && memo->expects_anything() && memo->scene_ == graph.shared_scene() ? memo
-                                                                                             : nullptr) {
+                                                                                                : nullptr) {
   if (memo_ == nullptr) return;
   frame_ = key_frame(graph, compiled, functional, options);
   for (std::size_t i = 0; i < frame_.passes.size(); ++i)
@@ -81,8 +81,8 @@ void SharedPasses::bring_image(int image, const Digest& state, FrameMemory& memo
   if (!memory.is_away(ImageId{image})) return;
   const auto held = memo_->states_.find(state);
   const bool last = --held->second.uses <= 0;
-  memory.bring_back(ImageId{image}, last ? std::move(held->second.image)
-                                         : std::make_unique<GpuImage>(*held->second.image));
+  memory.bring_back(ImageId{image},
+                    last ? std::move(held->second.image) : std::make_unique<GpuImage>(*held->second.image));
   if (last) memo_->forget(held);
 }
 

@@ -90,7 +90,8 @@ TEST(SharedPasses, AnotherViewIsAnotherFrame) {
   PassMemo memo(kPlenty);
   EmulationOptions options;
   options.memo = &memo;
-  std::vector<FrameSetup> all = {{"none", "sponza_hall:bays=4", 64, 36}, {"none", "sponza_hall:bays=4", 64, 40}};
+  std::vector<FrameSetup> all = {{"none", "sponza_hall:bays=4", 64, 36},
+                                 {"none", "sponza_hall:bays=4", 64, 40}};
   const std::vector<Emulation> frames = run_all(all, options);
   EXPECT_EQ(difference(frames[1], run_frame(all[1], {})), "");
   EXPECT_LT(frames[1].reused_passes, frames[1].trace.passes.size());

@@ -1,9 +1,11 @@
-// Pictures are written on a thread of their own: the same files as one after the other, and no failure is lost.
+// Pictures are written on a thread of their own: the same files as one after the other, and no failure is
+// lost.
 #include "lab/results/picture_writer.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <memory>
 
 #include "lab/base/files.h"
 
@@ -23,7 +25,7 @@ PointResult point_of(float step) {
   emulation->shading_heat = gradient(100.0f * step);
   PointResult point;
   point.emulation = std::move(emulation);
-  point.flip_map = gradient(0.5f * step);
+  point.flip_map = std::make_shared<const pipeline::Image>(gradient(0.5f * step));
   return point;
 }
 

@@ -49,7 +49,8 @@ TEST(HeatMap, IsWhatEncodingTheMapsColorsGives) {
       const glm::vec3 shown = magma(values.pixels[i].x / scale);
       for (int c = 0; c < 3; ++c) {
         const float encoded = std::min(srgb_from_linear(linear_from_srgb(shown[c])), 1.0f);
-        ASSERT_EQ(codes[3 * i + static_cast<std::size_t>(c)], static_cast<std::uint8_t>(encoded * 255.0f + 0.5f));
+        ASSERT_EQ(codes[3 * i + static_cast<std::size_t>(c)],
+                  static_cast<std::uint8_t>(encoded * 255.0f + 0.5f));
       }
     }
   }
