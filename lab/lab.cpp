@@ -218,6 +218,8 @@ std::vector<Ranking> Lab::rank_each(const std::vector<RunPlan>& given, const Ran
   std::vector<RunPlan> plans;
   std::size_t stages = 0;
   for (const RunPlan& plan : given) stages += Session::stages(plans.emplace_back(ranking_plan(plan)));
+  for (const RunPlan& plan : plans)
+    session_->scene(plan.view);  // a camera that is none comes before any work
   StageProgress progress(session_->observer(), stages);
   std::vector<Ranking> rankings;
   for (std::size_t i = 0; i < plans.size(); ++i) {

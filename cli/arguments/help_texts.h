@@ -42,7 +42,7 @@ of the timing engine). With two techniques or GPUs, also where they differ.)";
 inline constexpr std::string_view kHelpRank = R"(Examples:
   hwsim rank sponza_hall -t msaa4x,msaa8x -g gtx980 --resolution 320x180 --reference 4
   hwsim rank sponza_hall -t msaa4x,ssaa4x --budget "aa_ms<=0.1, extra_mib<=8" --resolution 320x180 --reference 4
-  hwsim rank sponza_hall -t fxaa,smaa -g gtx980,rtx4090 --vary camera=0,1 --metric psnr --edges --resolution 320x180 --reference 4
+  hwsim rank car_body -t fxaa,smaa -g gtx980,rtx4090 --vary camera=close_up,distant --metric psnr --edges --resolution 320x180 --reference 4
 
 Ranks techniques (all, unless -t names some) on each GPU, in each view that --vary names: time, memory, bytes and error of
 the image, the Pareto front of time and error, and what each is under a budget: ok, unknown

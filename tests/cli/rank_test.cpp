@@ -152,6 +152,10 @@ TEST_F(RankTest, MistakesEndInMessages) {
   refused("--vary gpu.core_clock_mhz=1,2", "U004");
   refused("--metric psrn", "U003");
   refused("--metric ssim --edges", "U003");
+  // The last view's mistake comes before the first one's frames.
+  const Outcome late = place.hwsim("rank triangle.gltf -t fxaa --resolution 32x32 --vary camera=0,7");
+  EXPECT_NE(late.err.find("error[U009]"), std::string::npos) << late.err;
+  EXPECT_EQ(late.err.find("none on"), std::string::npos) << late.err;
   EXPECT_EQ(place.listing(), "triangle.gltf");
 }
 
