@@ -45,6 +45,7 @@ ExitStatus dispatch(const Command& command, Context& context) {
                                [&](const ExplainArguments& o) { return explain(o, context); },
                                [&](const RankArguments& o) { return rank(o, context); },
                                [&](const SweepArguments& o) { return sweep(o, context); },
+                               [&](const OptimizeArguments& o) { return optimize(o, context); },
                                [&](const ReportArguments& o) { return report(o, context); },
                                [&](const ReferenceArguments& o) { return reference(o, context); },
                                [&](const ListArguments& o) { return list(o, context); },
@@ -145,8 +146,9 @@ ExitStatus run_program(int argc, char** argv) {
   }
 }
 
-/// Each replay and each pass takes and frees the same megabytes, images up to 32 MiB a piece. By default they go
-/// back to the system each time, and come again as page faults: half of a sweep's time, a tenth of a ranking's.
+/// Each replay and each pass takes and frees the same megabytes, images up to 32 MiB a piece. By default they
+/// go back to the system each time, and come again as page faults: half of a sweep's time, a tenth of a
+/// ranking's.
 void keep_freed_memory() {
   constexpr int kMib = 1 << 20;
   mallopt(M_MMAP_THRESHOLD, 32 * kMib);

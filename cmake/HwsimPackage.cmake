@@ -16,7 +16,7 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME hwsim)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME hwsim-dev)
 # What find_package(hwsim) and hwsim.pc look for.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "hwsim (= ${PROJECT_VERSION}), libglm-dev, libhwy-dev, libtinygltf-dev, libtbb-dev, libembree-dev, nlohmann-json3-dev, libtomlplusplus-dev, libceres-dev, libfmt-dev, libsqlite3-dev, libturbojpeg0-dev, zlib1g-dev")
+  "hwsim (= ${PROJECT_VERSION}), libglm-dev, libhwy-dev, libtinygltf-dev, libtbb-dev, libembree-dev, nlohmann-json3-dev, libtomlplusplus-dev, libceres-dev, libfmt-dev, libsqlite3-dev, libnlopt-dev, libturbojpeg0-dev, zlib1g-dev")
 if(HWSIM_PYTHON)
   set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "python3, python3-numpy")
   set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "python3-pandas, python3-tqdm")

@@ -261,6 +261,36 @@ EmulationSummary Lab::emulate_works(const SweepPlan& plan, const Shard& shard) {
   return lab::emulate_works(plan, shard, *session_);
 }
 
+Optimization Lab::optimize(const Request& request, const PointSettings& frames, const std::string& prices,
+                           const OptimizeGoal& goal) {
+  if (request.gpus.size() != 1)
+    fail_usage("U004", "a GPU is optimized from one GPU on", "", "one --gpu, the one to be changed");
+  GpuChoice choice{request.gpus.front(), request.overlays, request.sets, request.settings.calibrated};
+  const GpuFiles files = session_->files().gpu_files(choice);
+  const GpuConfig gpu = files.with(choice.sets);
+  const PriceList list = read_prices(session_->files().folder().prices_file(prices), gpu);
+  std::vector<Diagnostic> problems;
+  std::vector<RunPlan> plans;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const std::vector<Assignment> view = frames[i];
+    for (const Assignment& set : view)
+      if (!is_of_frame(set.path))
+        fail_usage("U041", "`" + set.path + "` is no part of a frame", "",
+                   "--vary of scene, camera, resolution or scene.*");
+    Request shown = request;
+    apply(shown, view, problems);
+    const RunPlan plan = numbers_only(make_plan(shown, session_->files(), problems));
+    for (const algos::TechniqueChoice& technique : plan.techniques) {
+      plans.push_back(plan);
+      plans.back().techniques = {technique};
+    }
+  }
+  if (!problems.empty()) throw InputError(problems);
+  std::vector<KeptFrame> kept;
+  for (const RunPlan& plan : plans) kept.push_back(emulate(plan));
+  return lab::optimize(kept, {files, choice.sets}, list, goal);
+}
+
 Reproduction Lab::reproduce(const std::string& paper) {
   const auto calibration = session_->files().calibration();
   const cost_models::Experiment experiment = load_experiment({paper}, *session_);

@@ -16,6 +16,7 @@
 #include "lab/studies/explanation.h"
 #include "lab/studies/external.h"
 #include "lab/studies/kept_frame.h"
+#include "lab/studies/optimize.h"
 #include "lab/studies/ranking.h"
 #include "lab/studies/reproduction.h"
 #include "lab/studies/self_check.h"
@@ -106,6 +107,12 @@ class Lab {
   /// emulated into the cache.
   std::vector<PlannedWork> sweep_works(const SweepPlan& plan, std::size_t shards);
   EmulationSummary emulate_works(const SweepPlan& plan, const Shard& shard);
+
+  /// The cheapest or the fastest GPU for the request's techniques in each view that `frames` varies, at the
+  /// prices of a file (studies/prices.h). Throws InputError U004 unless there is one GPU, and U041 where
+  /// `frames` varies what is no view.
+  Optimization optimize(const Request& request, const PointSettings& frames, const std::string& prices,
+                        const OptimizeGoal& goal);
 
   /// The tables of a paper, published beside predicted.
   Reproduction reproduce(const std::string& paper);

@@ -10,7 +10,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build ccache git ca-certificates
   libglm-dev libtinygltf-dev libopenimageio-dev libembree-dev libtbb-dev libhwy-dev
-  libceres-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libsqlite3-dev
+  libceres-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libsqlite3-dev libnlopt-dev
   libbenchmark-dev libgtest-dev libturbojpeg0-dev zlib1g-dev
   help2man pkg-config # manual pages; the test of hwsim.pc
   libegl-dev libgl-dev libopengl-dev libegl-mesa0 libgl1-mesa-dri # llvmpipe: the rasterizer's oracle

@@ -199,4 +199,21 @@ void add_vary(CLI::App& app, std::vector<std::string>& vary, bool& zip) {
   app.add_flag("--zip", zip, "Vary all together instead of every combination");
 }
 
+void add_optimize_goal(CLI::App& app, OptimizeArguments& optimize) {
+  app.add_option("--prices", optimize.prices,
+                 "Area, bounds and step of each key that may be chosen: a .toml file, or `example`")
+      ->required()
+      ->type_name("NAME|FILE");
+  app.add_option("--time-ms", optimize.goal.time_ms, "The smallest GPU whose slowest frame takes no longer")
+      ->check(CLI::Range(1e-6, 1e9))
+      ->type_name("MS");
+  app.add_option("--area", optimize.goal.area, "The fastest GPU with no more area")
+      ->check(CLI::Range(1e-6, 1e12))
+      ->type_name("UNITS");
+  app.add_option("--front", optimize.goal.front_points,
+                 "Areas of the front of area and time; default 9, 0: none")
+      ->check(CLI::Range(0, 1000))
+      ->type_name("N");
+}
+
 }  // namespace hwsim::cli

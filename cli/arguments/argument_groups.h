@@ -24,6 +24,8 @@ void add_points(CLI::App& app, RunArguments& run);
 void add_reference_shadows(CLI::App& app, ViewArguments& view);
 void add_reference_samples(CLI::App& app, RunArguments& run);
 void add_no_image(CLI::App& app, RunArguments& run);
+/// Prices, the limit, and the front.
+void add_optimize_goal(CLI::App& app, OptimizeArguments& optimize);
 void add_vary(CLI::App& app, std::vector<std::string>& vary, bool& zip);
 
 }  // namespace hwsim::cli

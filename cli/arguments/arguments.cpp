@@ -43,6 +43,7 @@ struct Parser {
   ExplainArguments explain;
   RankArguments rank;
   SweepArguments sweep;
+  OptimizeArguments optimize;
   ReportArguments report;
   ReferenceArguments reference;
   ListArguments list;
@@ -73,6 +74,7 @@ struct Parser {
   void add_explain();
   void add_rank();
   void add_sweep();
+  void add_optimize();
   void add_report();
   void add_reference();
   void add_list_and_show();
@@ -172,6 +174,15 @@ void Parser::add_sweep() {
   sub.add_flag("--dry-run", sweep.dry_run, "List the points, run nothing");
   add_report_file(sub, sweep.report);
   add_common(sub, sweep.common);
+}
+
+void Parser::add_optimize() {
+  CLI::App& sub = add(app, "optimize", kHelpOptimize, [this] { return Command(optimize); });
+  add_view(sub, optimize.view, true);
+  add_points(sub, optimize);
+  add_vary(sub, optimize.vary, optimize.zip);
+  add_optimize_goal(sub, optimize);
+  add_common(sub, optimize.common);
 }
 
 void Parser::add_report() {
@@ -351,6 +362,7 @@ Parser::Parser() {
   add_explain();
   add_rank();
   add_sweep();
+  add_optimize();
   add_report();
   add_reference();
   add_list_and_show();

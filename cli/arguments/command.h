@@ -9,6 +9,7 @@
 #include "lab/catalog/data_sheet.h"
 #include "lab/request/request.h"
 #include "lab/results/run_directory.h"
+#include "lab/studies/optimize.h"
 
 namespace hwsim::cli {
 using namespace lab;  // the program is the lab's front
@@ -97,6 +98,14 @@ struct SweepArguments : RunArguments {
   bool rows = false;                 ///< every point in text, too, not what they show together
   std::optional<std::string> shard;  ///< "1/4"
   std::vector<std::string> merge;
+};
+
+/// The cheapest or the fastest GPU for some frames.
+struct OptimizeArguments : RunArguments {
+  std::vector<std::string> vary;  ///< views
+  bool zip = false;
+  std::string prices;  ///< a TOML file
+  OptimizeGoal goal;
 };
 
 /// What was written by others of these, as one HTML page.
@@ -200,8 +209,8 @@ struct PrintText {
 
 using Command =
     std::variant<PrintText, RunArguments, ExplainArguments, RankArguments, CompareArguments, SweepArguments,
-                 ReportArguments, ReferenceArguments, ListArguments, ShowArguments, SceneCheckArguments,
-                 ConfigArguments, DoctorArguments, HelpArguments, CacheArguments, FitArguments,
-                 ValidateArguments, ReproduceArguments, CompletionArguments, GpuNewArguments>;
+                 OptimizeArguments, ReportArguments, ReferenceArguments, ListArguments, ShowArguments,
+                 SceneCheckArguments, ConfigArguments, DoctorArguments, HelpArguments, CacheArguments,
+                 FitArguments, ValidateArguments, ReproduceArguments, CompletionArguments, GpuNewArguments>;
 
 }  // namespace hwsim::cli

@@ -57,6 +57,15 @@ Runs many points: techniques, GPUs, and settings varied over lists and ranges. E
 written to the database before the first one runs, each result as it comes: --resume goes on
 after an interruption. Without a scene, prints what the database holds.)";
 
+inline constexpr std::string_view kHelpOptimize = R"(Examples:
+  hwsim optimize sponza_hall -t msaa4x,deferred -g gtx980 --prices example --time-ms 0.8 --resolution 320x180
+  hwsim optimize sponza_hall -t msaa8x --prices example --area 300 --front 0 --resolution 320x180
+  hwsim optimize sponza_hall --vary resolution=160x90,320x180 --prices example --format csv
+
+Finds the smallest GPU that draws every frame in a time, or the fastest of an area, at the prices of a
+file, and the GPUs that nobody beats in both. Frames are the techniques in each view that --vary names.
+Status 4: no GPU within the bounds keeps the limit; the answer says how near one comes.)";
+
 inline constexpr std::string_view kHelpReport = R"(Examples:
   hwsim run sponza_hall -t none,msaa4x --resolution 320x180 --reference 4 --out runs/hall --report hall.html
   hwsim report runs/hall -o hall.html --force

@@ -12,6 +12,7 @@ ExitStatus compare(const CompareArguments& options, Context& context);
 ExitStatus explain(const ExplainArguments& options, Context& context);
 ExitStatus rank(const RankArguments& options, Context& context);
 ExitStatus sweep(const SweepArguments& options, Context& context);
+ExitStatus optimize(const OptimizeArguments& options, Context& context);
 ExitStatus report(const ReportArguments& options, Context& context);
 ExitStatus reference(const ReferenceArguments& options, Context& context);
 ExitStatus list(const ListArguments& options, Context& context);

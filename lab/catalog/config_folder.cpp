@@ -62,4 +62,13 @@ std::string ConfigFolder::overlay_file(const std::string& name_or_path) const {
        "`hwsim list overlays` lists them; a file's name ends in .toml");
 }
 
+std::string ConfigFolder::prices_file(const std::string& name_or_path) const {
+  if (has_extension(name_or_path, ".toml")) return name_or_path;
+  const fs::path file = fs::path(below(path(), "prices")) / (name_or_path + ".toml");
+  std::error_code error;
+  if (fs::is_regular_file(file, error)) return file.string();
+  fail("C010", "no list of prices `" + name_or_path + "` comes with hwsim", "",
+       "`example`, or your own: a file whose name ends in .toml");
+}
+
 }  // namespace hwsim::lab

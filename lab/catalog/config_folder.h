@@ -25,6 +25,10 @@ class ConfigFolder {
   /// U018.
   std::string overlay_file(const std::string& name_or_path) const;
 
+  /// The file of a list of prices: a path that ends in .toml as it is, a name from the folder. Throws
+  /// InputError C010.
+  std::string prices_file(const std::string& name_or_path) const;
+
  private:
   std::string named_;
 };

@@ -72,6 +72,12 @@ constexpr ErrorCode kCodes[] = {
      "A frame is timed on GPUs with the features and limits that it was drawn for (features.*, "
      "functional.*): others "
      "would do other work."},
+    {"C026", "prices of a GPU's parts",
+     "A list of prices (`hwsim optimize --prices`) has a table for each number of a GPU that may be chosen: "
+     "its area, "
+     "its bounds, its step, and the keys that scale with it."},
+    {"U041", "nothing to optimize",
+     "`hwsim optimize` changes one GPU for frames: techniques, and views that --vary names."},
     {"K001", "damaged file in the cache",
      "A file that hwsim keeps to save work is cut off, changed, or of another version. It is made anew: "
      "results "

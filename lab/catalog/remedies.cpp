@@ -121,6 +121,8 @@ constexpr std::array kRemedies = {
     Remedy{"U022", "--budget 'aa_ms<=1.5, extra_mib<=192'"},
     Remedy{"U023", "give fewer folders, or run with fewer techniques and GPUs"},
     Remedy{"U030", "leave the flag out, or give a scene"},
+    Remedy{"C026", "begin from configs/prices/example.toml"},
+    Remedy{"U041", "a scene, -t with techniques, and --vary of scene, camera, resolution or scene.*"},
     Remedy{"U040", "emulate the frame anew for this GPU"},
     Remedy{"X001", "please report the message: it is a mistake in hwsim"},
     Remedy{"X002", "a smaller scene, a smaller --resolution, fewer --jobs, or a larger limit"},

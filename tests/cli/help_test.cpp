@@ -16,10 +16,11 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::vector<std::string> kCommands = {
-    "",       "run",          "explain",     "rank",        "compare",       "sweep",     "reference",
-    "report", "list",         "show",        "scene",       "scene check",   "gpu",       "gpu new",
-    "config", "config check", "config show", "config diff", "config schema", "doctor",    "help",
-    "cache",  "cache list",   "cache prune", "fit",         "validate",      "reproduce", "completion"};
+    "",          "run",    "explain",      "rank",        "compare",     "sweep",         "reference",
+    "optimize",  "report", "list",         "show",        "scene",       "scene check",   "gpu",
+    "gpu new",   "config", "config check", "config show", "config diff", "config schema", "doctor",
+    "help",      "cache",  "cache list",   "cache prune", "fit",         "validate",      "reproduce",
+    "completion"};
 
 std::vector<std::string> examples_of(const std::string& help) {
   std::vector<std::string> examples;
