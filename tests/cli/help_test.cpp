@@ -107,15 +107,26 @@ TEST(CompletionTest, ScriptsAreValidInTheirShells) {
   }
 }
 
-TEST(CompletionTest, BashCompletesCommandsFlagsAndValues) {
-  const Workplace place;
-  place.write("complete.bash", place.hwsim("completion bash").out);
-  const auto complete = [&](const std::string& words, int index) {
-    return place
+/// What bash offers for the word `index` of a command line.
+class BashCompletion {
+ public:
+  explicit BashCompletion(const Workplace& place) : place_(place) {
+    place.write("complete.bash", place.hwsim("completion bash").out);
+  }
+  std::string operator()(const std::string& words, int index) const {
+    return place_
         .shell("bash -c 'source ./complete.bash; COMP_WORDS=(" + words +
                "); COMP_CWORD=" + std::to_string(index) + "; _hwsim; echo \"${COMPREPLY[@]}\"'")
         .out;
-  };
+  }
+
+ private:
+  const Workplace& place_;
+};
+
+TEST(CompletionTest, BashCompletesCommandsFlagsAndValues) {
+  const Workplace place;
+  const BashCompletion complete(place);
   EXPECT_EQ(complete("hwsim refer", 1), "reference\n");
   EXPECT_NE(complete("hwsim run --tech", 2).find("--technique"), std::string::npos);
   EXPECT_NE(complete("hwsim run --gpu gtx98", 3).find("gtx980"), std::string::npos);
@@ -126,13 +137,7 @@ TEST(CompletionTest, BashCompletesCommandsFlagsAndValues) {
 
 TEST(CompletionTest, BashCompletesListsAndSettings) {
   const Workplace place;
-  place.write("complete.bash", place.hwsim("completion bash").out);
-  const auto complete = [&](const std::string& words, int index) {
-    return place
-        .shell("bash -c 'source ./complete.bash; COMP_WORDS=(" + words +
-               "); COMP_CWORD=" + std::to_string(index) + "; _hwsim; echo \"${COMPREPLY[@]}\"'")
-        .out;
-  };
+  const BashCompletion complete(place);
   EXPECT_EQ(complete("hwsim run -g gtx980,hd58", 3), "gtx980,hd5870\n");
   EXPECT_NE(complete("hwsim run -t none,msaa", 3).find("none,msaa4x"), std::string::npos);
   EXPECT_NE(complete("hwsim compare --what-if dram-x2,rops", 3).find("dram-x2,rops-x2"), std::string::npos);
