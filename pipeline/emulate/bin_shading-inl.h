@@ -53,8 +53,8 @@ class BinShading : protected BinColor {
     batch.sample_index = -1;
     batch.active_lanes = masks.any_lane;
     batch.valid_lanes = quads;
-    set_up_tile(batch, x, y, centroid ? AttributeLocation::centroid : AttributeLocation::center,
-                c_.coverage_positions, 0);
+    set_up_tile(batch, x, y, centroid ? AttributeLocation::centroid : AttributeLocation::center, c_.centroid,
+                0);
     shade(batch, false);
     add_tile_heat(batch, x, y);
     if (batch.discarded_lanes == 0 && !w_.late_z && !masks_output_ && !gives_depth())
@@ -72,7 +72,7 @@ class BinShading : protected BinColor {
     batch.sample_index = s;
     batch.active_lanes = kept.lanes[s];
     batch.valid_lanes = quad_lanes(kept.lanes[s]);
-    set_up_tile(batch, x, y, AttributeLocation::sample, c_.positions, s);
+    set_up_tile(batch, x, y, AttributeLocation::sample, {c_.positions, {}}, s);
     shade(batch, true);
     add_tile_heat(batch, x, y);
     apply_output_mask(batch, s, s + 1, kept);
@@ -232,7 +232,7 @@ class BinShading : protected BinColor {
     FragmentBatch& batch = w_.batch;
     const AttributeLocation location =
         w_.state->raster.centroid ? AttributeLocation::centroid : AttributeLocation::center;
-    for (int q = 0; q < batch.quad_count; ++q) set_up_quad(batch, q, location, c_.coverage_positions, 0);
+    for (int q = 0; q < batch.quad_count; ++q) set_up_quad(batch, q, location, c_.centroid, 0);
     shade(batch, false);
     add_heat(batch);
     if (masks_output_) mask_quads();
@@ -271,7 +271,7 @@ class BinShading : protected BinColor {
     part.layer = layer_;
     part.sample_index = s;
     for (int q = 0; q < part.quad_count; ++q)
-      set_up_quad(part, q, AttributeLocation::sample, c_.positions, s);
+      set_up_quad(part, q, AttributeLocation::sample, {c_.positions, {}}, s);
     shade(part, true);
     add_heat(part);
     if (masks_output_) mask_quads_of_sample(part, s);

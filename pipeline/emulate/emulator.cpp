@@ -223,9 +223,12 @@ class FrameRunner {
     const PipelineState& state = pass.batches.empty() ? pass.state : pass.batches.front().state;
     if (!state.raster.sample_positions.empty()) c.positions = state.raster.sample_positions;
     c.coverage_positions = c.positions;
+    c.centroid = standard_centroid(pass.samples);
+    if (!state.raster.sample_positions.empty()) c.centroid = {c.positions, {}};
     if (pass.coverage_samples > 0) {
       coverage_positions_ = coverage_positions(pass.samples, pass.coverage_samples);
       c.coverage_positions = coverage_positions_;
+      c.centroid = {c.coverage_positions, {}};
       c.positions = c.coverage_positions.first(static_cast<std::size_t>(pass.samples));
     }
     const auto [left, right] =

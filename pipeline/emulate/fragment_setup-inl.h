@@ -50,18 +50,23 @@ HWY_INLINE void lane_coverage(const QuadSamples& samples, int count, std::uint32
   }
 }
 
+inline std::size_t first_covered(std::uint32_t bits, const CentroidRule& rule) {
+  for (const std::uint8_t s : rule.order)
+    if ((bits >> s & 1u) != 0) return s;
+  return static_cast<std::size_t>(__builtin_ctz(bits));
+}
+
 /// Attribute location of the centroid rule (docs/techniques/conventions.md#rasterization): the center where
-/// all samples are covered or none is, else the first covered sample in index order. Depth tests don't move
-/// it.
-inline void centroid_offsets(const std::uint32_t* coverage, std::span<const SamplePosition> positions,
-                             float* dx, float* dy) {
-  const std::uint32_t all = positions.size() == 32 ? 0xffffffffu : (1u << positions.size()) - 1;
+/// all samples are covered or none is, else the rule's first covered sample. Depth tests don't move it.
+inline void centroid_offsets(const std::uint32_t* coverage, const CentroidRule& rule, float* dx, float* dy) {
+  const std::size_t count = rule.positions.size();
+  const std::uint32_t all = count == 32 ? 0xffffffffu : (1u << count) - 1;
   for (int lane = 0; lane < 4; ++lane) {
     const std::uint32_t bits = coverage[lane];
     const bool center = bits == 0 || bits == all;
-    const auto s = static_cast<std::size_t>(center ? 0 : __builtin_ctz(bits));
-    dx[lane] = center ? 0.0f : static_cast<float>(positions[s].x) * 0.0625f;
-    dy[lane] = center ? 0.0f : static_cast<float>(positions[s].y) * 0.0625f;
+    const std::size_t s = center ? 0 : first_covered(bits, rule);
+    dx[lane] = center ? 0.0f : static_cast<float>(rule.positions[s].x) * 0.0625f;
+    dy[lane] = center ? 0.0f : static_cast<float>(rule.positions[s].y) * 0.0625f;
   }
 }
 
@@ -80,24 +85,23 @@ HWY_INLINE void barycentrics(const RasterTriangle& t, LaneF x, LaneF y, float* b
 
 /// Offsets of the attribute location from the pixel centers for lanes [first, ...).
 HWY_INLINE void location_offsets(const FragmentBatch& batch, int first, AttributeLocation location,
-                                 std::span<const SamplePosition> positions, int sample, LaneF& dx,
-                                 LaneF& dy) {
+                                 const CentroidRule& rule, int sample, LaneF& dx, LaneF& dy) {
   if (location == AttributeLocation::sample) {
-    const SamplePosition p = positions[static_cast<std::size_t>(sample)];
+    const SamplePosition p = rule.positions[static_cast<std::size_t>(sample)];
     dx = LaneF(static_cast<float>(p.x) * 0.0625f);
     dy = LaneF(static_cast<float>(p.y) * 0.0625f);
     return;
   }
   HWY_ALIGN float x[kVectorLanes], y[kVectorLanes];
   for (int lane = 0; lane < kVectorLanes; lane += 4)
-    centroid_offsets(batch.primitive_coverage.data() + first + lane, positions, x + lane, y + lane);
+    centroid_offsets(batch.primitive_coverage.data() + first + lane, rule, x + lane, y + lane);
   dx = load(x);
   dy = load(y);
 }
 
 /// As set_up_quad, for the whole tile with corner (x, y) and one triangle.
 inline void set_up_tile(FragmentBatch& batch, int x, int y, AttributeLocation location,
-                        std::span<const SamplePosition> positions, int sample) {
+                        const CentroidRule& rule, int sample) {
   const RasterTriangle* t = batch.triangle[0];
   for (int first = 0; first < kBlockLanes; first += kVectorLanes) {
     if ((batch.valid_lanes >> first & kRegisterBits) == 0) continue;
@@ -114,14 +118,14 @@ inline void set_up_tile(FragmentBatch& batch, int x, int y, AttributeLocation lo
       continue;
     }
     LaneF dx(0.0f), dy(0.0f);
-    location_offsets(batch, first, location, positions, sample, dx, dy);
+    location_offsets(batch, first, location, rule, sample, dx, dy);
     barycentrics(*t, px + dx, py + dy, batch.b1.data() + first, batch.b2.data() + first);
   }
 }
 
 /// Everything of quad `quad` of `batch` that a shader can ask for; its triangle and position are set already.
 HWY_INLINE void set_up_quad(FragmentBatch& batch, int quad, AttributeLocation location,
-                            std::span<const SamplePosition> positions, int sample) {
+                            const CentroidRule& rule, int sample) {
   set_pixels(batch, quad);
   const RasterTriangle* t = batch.triangle[static_cast<std::size_t>(quad)];
   if (t == nullptr) return;
@@ -140,9 +144,9 @@ HWY_INLINE void set_up_quad(FragmentBatch& batch, int quad, AttributeLocation lo
   }
   HWY_ALIGN float dx[4], dy[4];
   if (location == AttributeLocation::centroid) {
-    centroid_offsets(batch.primitive_coverage.data() + lane, positions, dx, dy);
+    centroid_offsets(batch.primitive_coverage.data() + lane, rule, dx, dy);
   } else {
-    const SamplePosition p = positions[static_cast<std::size_t>(sample)];
+    const SamplePosition p = rule.positions[static_cast<std::size_t>(sample)];
     for (int i = 0; i < 4; ++i) {
       dx[i] = static_cast<float>(p.x) * 0.0625f;
       dy[i] = static_cast<float>(p.y) * 0.0625f;

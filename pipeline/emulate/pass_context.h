@@ -23,6 +23,7 @@ struct PassContext {
   std::span<const SamplePosition> positions;
   /// Where coverage is found: `positions`, and in a pass with a coverage map those behind them.
   std::span<const SamplePosition> coverage_positions;
+  CentroidRule centroid;                     ///< over `coverage_positions`
   GpuImage* coverage_map = nullptr;          ///< the color image that has one
   std::span<const ViewportShift> viewports;  ///< at least one
   GuardBand band;

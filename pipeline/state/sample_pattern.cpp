@@ -1,9 +1,11 @@
 #include "pipeline/state/sample_pattern.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace hwsim::pipeline {
 namespace {
@@ -44,6 +46,15 @@ constexpr std::array<P, 32> make_32() {
   return positions;
 }
 constexpr std::array<P, 32> k32 = make_32();
+
+constexpr std::array<std::uint8_t, 32> from_the_center() {
+  std::array<std::uint8_t, 32> order{};
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint8_t>(i);
+  const auto key = [](std::uint8_t i) { return std::pair(k32[i].x * k32[i].x + k32[i].y * k32[i].y, i); };
+  std::sort(order.begin(), order.end(), [&](std::uint8_t a, std::uint8_t b) { return key(a) < key(b); });
+  return order;
+}
+constexpr std::array<std::uint8_t, 32> kFromTheCenter32 = from_the_center();
 }  // namespace
 
 std::span<const SamplePosition> standard_sample_positions(int samples) {
@@ -63,6 +74,11 @@ std::span<const SamplePosition> standard_sample_positions(int samples) {
     default:
       throw std::invalid_argument("no standard pattern of " + std::to_string(samples) + " samples");
   }
+}
+
+CentroidRule standard_centroid(int samples) {
+  const std::span<const std::uint8_t> order(kFromTheCenter32);
+  return {standard_sample_positions(samples), samples == 32 ? order : std::span<const std::uint8_t>()};
 }
 
 std::vector<SamplePosition> coverage_positions(int samples, int positions) {
