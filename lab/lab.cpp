@@ -9,8 +9,8 @@
 #include "lab/report/gather.h"
 #include "lab/report/page.h"
 #include "lab/request/image_input.h"
-#include "lab/request/request_words.h"
 #include "lab/studies/published_runs.h"
+#include "lab/studies/views.h"
 
 namespace hwsim::lab {
 namespace {
@@ -98,6 +98,15 @@ const cost_models::Calibration* Lab::calibration() { return session_->files().ca
 
 RunPlan Lab::plan(const Request& request, std::vector<Diagnostic>& problems) {
   return make_plan(request, session_->files(), problems);
+}
+
+std::vector<NamedPlan> Lab::plan_views(const Request& request, const PointSettings& views) {
+  std::vector<Diagnostic> problems;
+  std::vector<NamedPlan> plans;
+  for (const NamedView& view : views_of(request, views, problems))
+    plans.push_back({view.name, make_plan(view.request, session_->files(), problems)});
+  if (!problems.empty()) throw InputError(problems);
+  return plans;
 }
 
 RunPlan Lab::plan(const Request& request, const std::vector<GpuChoice>& gpus,
@@ -269,25 +278,14 @@ Optimization Lab::optimize(const Request& request, const PointSettings& frames, 
   const GpuFiles files = session_->files().gpu_files(choice);
   const GpuConfig gpu = files.with(choice.sets);
   const PriceList list = read_prices(session_->files().folder().prices_file(prices), gpu);
-  std::vector<Diagnostic> problems;
-  std::vector<RunPlan> plans;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const std::vector<Assignment> view = frames[i];
-    for (const Assignment& set : view)
-      if (!is_of_frame(set.path))
-        fail_usage("U041", "`" + set.path + "` is no part of a frame", "",
-                   "--vary of scene, camera, resolution or scene.*");
-    Request shown = request;
-    apply(shown, view, problems);
-    const RunPlan plan = numbers_only(make_plan(shown, session_->files(), problems));
-    for (const algos::TechniqueChoice& technique : plan.techniques) {
-      plans.push_back(plan);
-      plans.back().techniques = {technique};
+  std::vector<KeptFrame> kept;
+  for (const NamedPlan& view : plan_views(request, frames)) {
+    RunPlan plan = numbers_only(view.plan);
+    for (const algos::TechniqueChoice& technique : view.plan.techniques) {
+      plan.techniques = {technique};
+      kept.push_back(emulate(plan));
     }
   }
-  if (!problems.empty()) throw InputError(problems);
-  std::vector<KeptFrame> kept;
-  for (const RunPlan& plan : plans) kept.push_back(emulate(plan));
   return lab::optimize(kept, {files, choice.sets}, list, goal);
 }
 

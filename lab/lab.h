@@ -28,6 +28,11 @@
 
 namespace hwsim::lab {
 
+struct NamedPlan {
+  std::string name;  ///< of its files; empty for a request that is not varied
+  RunPlan plan;
+};
+
 /// Every function throws InputError for a mistake in what was asked, before anything is drawn where it can be
 /// told by then, and InternalError when hwsim broke one of its own laws. Not for several threads at once.
 class Lab {
@@ -50,6 +55,10 @@ class Lab {
   /// The same for GPUs that are chosen one by one: the request's overlays and gpu.* settings are laid over
   /// each of them, and its own list of GPUs is not looked at.
   RunPlan plan(const Request& request, const std::vector<GpuChoice>& gpus, std::vector<Diagnostic>& problems);
+
+  /// The request's plan in each view, with the name of the view's files. Throws InputError with the problems
+  /// of all views, and U019 where `views` varies what changes no image.
+  std::vector<NamedPlan> plan_views(const Request& request, const PointSettings& views);
 
   /// The GPU with all that is laid over it.
   GpuConfig gpu(const GpuChoice& choice);
@@ -109,8 +118,8 @@ class Lab {
   EmulationSummary emulate_works(const SweepPlan& plan, const Shard& shard);
 
   /// The cheapest or the fastest GPU for the request's techniques in each view that `frames` varies, at the
-  /// prices of a file (studies/prices.h). Throws InputError U004 unless there is one GPU, and U041 where
-  /// `frames` varies what is no view.
+  /// prices of a file (studies/prices.h). Throws InputError U004 unless there is one GPU, and U019 where
+  /// `frames` varies what changes no image.
   Optimization optimize(const Request& request, const PointSettings& frames, const std::string& prices,
                         const OptimizeGoal& goal);
 

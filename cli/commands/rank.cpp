@@ -10,7 +10,6 @@
 #include "lab/base/json_text.h"
 #include "lab/base/messages.h"
 #include "lab/base/text.h"
-#include "lab/request/request_words.h"
 #include "lab/results/run_record.h"
 #include "lab/studies/axes.h"
 #include "pipeline/image/image_io.h"
@@ -25,39 +24,14 @@ RunArguments with_defaults(const RankArguments& options) {
   return run;
 }
 
-/// A view that --vary names, and what its files are called.
-struct RankedView {
-  RunPlan plan;
-  std::string name;
-};
-
-std::string name_of(const std::vector<Assignment>& settings) {
-  std::string name;
-  for (const Assignment& set : settings) name += (name.empty() ? "" : "-") + set.path + "-" + set.value;
-  for (char& c : name)
-    if (c == '/' || c == ':' || c == ',' || c == '=') c = '_';
-  return name;
-}
-
-std::vector<RankedView> views_of(const RankArguments& options, Lab& lab) {
+std::vector<NamedPlan> views_of(const RankArguments& options, Lab& lab) {
   const PointSettings settings(parse_axes(options.vary), options.zip ? Combine::zip : Combine::grid);
-  const Request base = request_of(with_defaults(options));
-  std::vector<RankedView> views;
-  std::vector<Diagnostic> problems;
-  for (const std::vector<Assignment>& view : settings.all()) {
-    for (const Assignment& set : view)
-      if (!is_of_frame(set.path))
-        fail_usage("U004", "`" + set.path + "` is no part of a view", "",
-                   "--vary of scene, camera, resolution or scene.*; -g takes several GPUs");
-    Request request = base;
-    apply(request, view, problems);
-    views.push_back({ranking_plan(lab.plan(request, problems)), name_of(view)});
-  }
-  if (!problems.empty()) throw InputError(problems);
+  std::vector<NamedPlan> views = lab.plan_views(request_of(with_defaults(options)), settings);
+  for (NamedPlan& view : views) view.plan = ranking_plan(std::move(view.plan));
   return views;
 }
 
-std::string plan_text(const std::vector<RankedView>& views) {
+std::string plan_text(const std::vector<NamedPlan>& views) {
   const RunPlan& plan = views.front().plan;
   std::string text =
       fmt::format("plan: {}, {} techniques on {}, {}x{}, reference of {} samples a pixel", plan.view.scene,
@@ -68,54 +42,28 @@ std::string plan_text(const std::vector<RankedView>& views) {
   return text;
 }
 
-std::string error_text(const Ranking& ranking, const RankedTechnique& technique) {
-  const char* where = ranking.edges ? " at edges" : "";
-  if (ranking.metric == "psnr") return fmt::format("PSNR{} {:.2f} dB", where, -technique.error);
-  if (ranking.metric == "ssim") return fmt::format("SSIM {:.4f}", technique.ssim);
-  return fmt::format("FLIP{} {:.4f}", where, technique.error);
-}
-
-std::string sentence(const Ranking& ranking) {
-  const RankedTechnique& best = ranking.techniques.front();
-  if (!may_be_within(best.verdict)) return "no technique stays within the budget\n\n";
-  return fmt::format("{} has the least error{}: {}, {:+.3f} ms and {:+.1f} MiB beyond no anti-aliasing{}\n\n",
-                     best.technique, ranking.budget.empty() ? "" : " within the budget",
-                     error_text(ranking, best), best.aa_ms, best.extra_mib,
-                     best.verdict == "ok" ? "" : ", " + best.verdict);
-}
-
-std::string sentence(const std::vector<OverallTechnique>& techniques, const std::vector<Ranking>& rankings) {
-  const OverallTechnique& best = techniques.front();
-  const std::string where = fmt::format("all {} rankings", rankings.size());
-  if (!may_be_within(best.verdict)) return "no technique stays within the budget in " + where + "\n\n";
-  return fmt::format(
-      "{} has the least error in {}{}: {:+.3f} ms and {:+.1f} MiB beyond no anti-aliasing at most{}\n\n",
-      best.technique, where, rankings.front().budget.empty() ? "" : " within the budget", best.aa_ms_most,
-      best.extra_mib_most, best.verdict == "ok" ? "" : ", " + best.verdict);
-}
-
 /// One ranking is answered as itself, several as one table with what techniques are over all of them.
 void print_rankings(const std::vector<Ranking>& rankings, const CommonArguments& common) {
   const nlohmann::ordered_json json = rankings.size() == 1 ? to_json(rankings.front()) : to_json(rankings);
   if (rankings.size() == 1) {
     print({.table = ranking_table(rankings.front()),
-           .heading = sentence(rankings.front()),
+           .heading = answer_of(rankings) + "\n\n",
            .footing = {},
            .json = &json,
            .one_screen = true},
           common);
     return;
   }
-  const std::vector<OverallTechnique> all = overall(rankings);
   print({.table = joined_table(rankings),
-         .heading = sentence(all, rankings) + to_text(overall_table(all)) + "\n",
+         .heading = answer_of(rankings) + "\n\n" + to_text(overall_table(overall(rankings))) + "\n" +
+                    to_text(best_table(rankings)) + "\n",
          .footing = {},
          .json = &json,
          .one_screen = true},
         common);
 }
 
-void write_files(const std::vector<Ranking>& rankings, const std::vector<RankedView>& views,
+void write_files(const std::vector<Ranking>& rankings, const std::vector<NamedPlan>& views,
                  const std::vector<pipeline::Image>& sheets, const RunRecord& record) {
   for (std::size_t i = 0; i < sheets.size(); ++i) {
     const std::string& name = views[i].name;
@@ -135,9 +83,9 @@ ExitStatus rank(const RankArguments& options, Context& context) {
   RankingSink check(question);  // mistakes in it come first
   check_report_place(options.report, options.common.force);
   Lab lab(lab_options(options, context.log));
-  const std::vector<RankedView> views = views_of(options, lab);
+  const std::vector<NamedPlan> views = views_of(options, lab);
   std::vector<RunPlan> plans;
-  for (const RankedView& view : views) plans.push_back(view.plan);
+  for (const NamedPlan& view : views) plans.push_back(view.plan);
   context.log.say(plan_text(views));
   InterruptGuard guard;
   RunRecord record(options.out, {plans.front(), plans.front().view.scene + options.budget, context.arguments,

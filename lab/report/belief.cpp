@@ -149,7 +149,19 @@ Table published_table(const Belief& belief) {
   return table;
 }
 
-Table ratio_table(const Belief& belief) {
+std::vector<PublishedRatio> ratios_of(const Belief& belief, const std::string& paper) {
+  std::vector<PublishedRatio> own;
+  std::ranges::copy_if(belief.ratios, std::back_inserter(own),
+                       [&](const PublishedRatio& ratio) { return ratio.paper == paper; });
+  return own;
+}
+
+std::size_t in_published_order(const std::vector<PublishedRatio>& ratios) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      ratios, [](const PublishedRatio& r) { return (r.held_out > 1.0) == (r.published > 1.0); }));
+}
+
+Table ratio_table(const std::vector<PublishedRatio>& ratios) {
   Table table{{{"paper", "paper"},
                {"gpu", "GPU"},
                {"techniques", "techniques"},
@@ -161,7 +173,7 @@ Table ratio_table(const Belief& belief) {
                {"first", "row"},
                {"second", "over row"}},
               {}};
-  for (const PublishedRatio& r : belief.ratios)
+  for (const PublishedRatio& r : ratios)
     table.rows.push_back({r.paper, r.gpu, r.techniques, r.scene, r.what, Real{r.published, 3},
                           Real{r.held_out, 3}, Real{r.held_out / r.published, 2}, r.second, r.first});
   return table;

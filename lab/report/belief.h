@@ -46,10 +46,15 @@ struct Belief {
 /// Empty without a calibration.
 Belief belief_of(const std::set<std::string>& gpus, Session& session);
 
-Table error_table(const Belief& belief);      ///< a row a kind of prediction
-Table published_table(const Belief& belief);  ///< a row a published time
-Table ratio_table(const Belief& belief);      ///< a row a pair of published times
-Table external_table(const Belief& belief);   ///< a row a time of another renderer
+/// The ratios of one paper, and how many of them are on the published side of 1: who of two techniques is
+/// faster.
+std::vector<PublishedRatio> ratios_of(const Belief& belief, const std::string& paper);
+std::size_t in_published_order(const std::vector<PublishedRatio>& ratios);
+
+Table error_table(const Belief& belief);                       ///< a row a kind of prediction
+Table published_table(const Belief& belief);                   ///< a row a published time
+Table ratio_table(const std::vector<PublishedRatio>& ratios);  ///< a row a pair of published times
+Table external_table(const Belief& belief);                    ///< a row a time of another renderer
 
 /// The fields that a page's script reads.
 nlohmann::ordered_json to_json(const Belief& belief);

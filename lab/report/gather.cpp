@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <set>
+#include <tuple>
 
 #include "hwsim/config/assign.h"
 #include "hwsim/trace/trace_file.h"
@@ -61,6 +63,8 @@ std::string view_words(View view) {
   return words;
 }
 
+using ViewParts = std::array<std::string, 3>;  ///< scene, camera, resolution
+
 /// Takes points as they come into a report.
 class ReportSink : public RunSink {
  public:
@@ -88,6 +92,8 @@ class ReportSink : public RunSink {
     shown.memory = memory_of(session_.scene(run.plan.view), *point.technique, *point.gpu);
     shown.reference = reference_;
     take_pictures(point, run, shown.pictures);
+    share_pictures(shown);
+    view_parts_.push_back(parts_of(run));
     shown.calibrated = run.plan.calibrated && run.plan.engine == Engine::queue;
     for (const Diagnostic& note : run.scene.notes) take_note(note);
   }
@@ -99,7 +105,26 @@ class ReportSink : public RunSink {
         fmt::format("{} cannot run: {}", point_name(technique, gpu), error.diagnostics().front().message));
   }
 
-  /// Where the images err most, of points that have the size of the first one.
+  /// Names of views from what differs between them; views that differ in something else are told by their
+  /// words.
+  void name_views() {
+    for (std::size_t part = 0; part < std::tuple_size_v<ViewParts>; ++part) {
+      const auto same = [&](const ViewParts& other) { return other[part] == view_parts_.front()[part]; };
+      if (std::ranges::all_of(view_parts_, same)) continue;
+      for (std::size_t i = 0; i < view_parts_.size(); ++i) {
+        std::string& view = report_.points[i].view;
+        view += (view.empty() ? "" : ", ") + view_parts_[i][part];
+      }
+    }
+    const auto unnamed = [&](const ReportedPoint& point) {
+      return point.view == report_.points.front().view &&
+             point.view_words != report_.points.front().view_words;
+    };
+    if (std::ranges::any_of(report_.points, unnamed))
+      for (ReportedPoint& point : report_.points) point.view = point.view_words;
+  }
+
+  /// Where the images err most, in the view of the first point.
   void mark_regions() {
     if (std::ranges::any_of(images_, [](const ShownImage& i) { return !i.error.empty(); }))
       report_.regions = worst_regions(images_, kRegionSidePx, kRegions);
@@ -112,6 +137,14 @@ class ReportSink : public RunSink {
       report_.limits.push_back(note.message);
   }
 
+  ViewParts parts_of(const RunContext& run) {
+    const std::vector<std::string>& cameras = run.scene.cameras;
+    const auto camera = static_cast<std::size_t>(session_.scene(run.plan.view).camera());
+    const Resolution& size = run.plan.view.resolution;
+    return {run.scene.name, cameras.empty() ? std::string() : cameras.at(camera),
+            fmt::format("{}x{}", size.width_px, size.height_px)};
+  }
+
   void take_pictures(const PointResult& point, const RunContext& run, PointPictures& pictures) {
     const pipeline::Emulation& emulation = *point.emulation;
     if (!run.plan.images || emulation.color.pixels.empty()) return;
@@ -120,11 +153,26 @@ class ReportSink : public RunSink {
         value_picture(emulation.shading_heat, static_cast<double>(largest(emulation.shading_heat)));
     if (!point.flip_map) return;
     pictures.flip = value_picture(*point.flip_map, 1.0);
-    const auto same_size = [&](const ShownImage& first) {
-      return first.width == emulation.color.width && first.height == emulation.color.height;
-    };
-    if (images_.empty() || same_size(images_.front()))
+    if (report_.points.back().view_words == report_.points.front().view_words)
       images_.push_back(shown_image("", emulation.color, point.flip_map.get()));
+  }
+
+  /// GPUs of the same features draw the same picture, which the page needs once.
+  void share_pictures(ReportedPoint& shown) {
+    shown.pictures_of = report_.points.size() - 1;
+    if (shown.pictures.color.empty()) return;
+    const auto same = [](const Picture& a, const Picture& b) {
+      return a.full_scale == b.full_scale && a.texels == b.texels;
+    };
+    for (std::size_t i = 0; i + 1 < report_.points.size(); ++i) {
+      const PointPictures& other = report_.points[i].pictures;
+      if (report_.points[i].view_words != shown.view_words || !same(other.color, shown.pictures.color) ||
+          !same(other.flip, shown.pictures.flip) || !same(other.heat, shown.pictures.heat))
+        continue;
+      shown.pictures_of = i;
+      shown.pictures = {};
+      return;
+    }
   }
 
   Report& report_;
@@ -133,6 +181,7 @@ class ReportSink : public RunSink {
   View view_;
   int samples_ = 0;
   std::vector<ShownImage> images_;
+  std::vector<ViewParts> view_parts_;  ///< of each point
 };
 
 void require_size(std::size_t points) {
@@ -155,6 +204,24 @@ void run_all(const std::vector<RunPlan>& plans, Report& report, Session& session
   for (const RunPlan& plan : plans) session.run(plan, sink, progress);
   require_size(report.points.size());
   sink.mark_regions();
+  sink.name_views();
+}
+
+/// "sponza_hall on gtx980"; what the points differ in is counted.
+std::string title_of(const Report& report, const Result& first) {
+  std::set<std::string> gpus, scenes;
+  for (const ReportedPoint& point : report.points) {
+    gpus.insert(point.explanation.result.gpu);
+    scenes.insert(point.explanation.result.scene);
+  }
+  const auto one_or_count = [](const std::set<std::string>& names, const std::string& first_name,
+                               const char* many) {
+    return names.size() == 1 ? first_name : fmt::format("{} {}", names.size(), many);
+  };
+  const std::string on =
+      one_or_count(scenes, first.scene, "scenes") + " on " + one_or_count(gpus, first.gpu, "GPUs");
+  if (report.sweep) return fmt::format("{}: a sweep of {} points", on, report.sweep->findings.points);
+  return report.rankings.size() > 1 ? fmt::format("{}: {} rankings", on, report.rankings.size()) : on;
 }
 
 void finish(Report& report, Session& session) {
@@ -166,10 +233,11 @@ void finish(Report& report, Session& session) {
   note_limits(report);
   if (const auto calibration = session.files().calibration()) {
     const auto [fast, slow] = extremes_of(report);
-    report.spread_interval = time_change_interval(*fast, *slow, *calibration);
+    report.spread_interval =
+        time_change_interval(fast->explanation.result, slow->explanation.result, *calibration);
   }
   const Result& first = report.points.front().explanation.result;
-  report.title = fmt::format("{} on {}", first.scene, first.gpu);
+  report.title = title_of(report, first);
 }
 
 std::optional<std::size_t> changed_point(const Report& report, const RunPlan& plan,
@@ -202,7 +270,7 @@ Report gather_report(const std::vector<std::string>& inputs, Session& session) {
   for (const std::string& input : inputs) {
     ReportInput& read = kept.emplace_back(read_report_input(input));
     for (const Request& request : read.requests) plans.push_back(make_plan(request, session.files()));
-    if (read.ranking) report.ranking = std::move(read.ranking);
+    std::ranges::move(read.rankings, std::back_inserter(report.rankings));
     if (read.comparison) report.comparison = std::move(read.comparison);
     if (read.sweep) report.sweep = std::move(read.sweep);
   }
@@ -238,6 +306,10 @@ Report gather_report(const Reproduction& reproduction, Session& session) {
   report.limits.emplace_back(
       "Fitted times were seen by the fit. The column of scenes held out, and the last section, have those "
       "that were not.");
+  report.limits.emplace_back(
+      "hwsim's pages docs/differences.md and docs/calibration.md say what differs from the paper, which "
+      "cells are worst, "
+      "and why as far as it is known.");
   report.limits.insert(report.limits.end(), missing.begin(), missing.end());
   report.belief = belief_of(gpus, session);
   return report;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "algos/techniques.h"
 #include "hwsim/config/toml_file.h"
@@ -66,27 +67,41 @@ void offer_what_ifs(Report& report, const ConfigFolder& folder) {
   }
 }
 
+namespace {
+
+/// Of all points with one support, whose names are the same words.
+std::string support_limit(const std::string& support, const std::string& names) {
+  if (support == "extrapolated")
+    return names + ": extrapolated. No published time of these techniques, or of such a GPU, was fitted.";
+  if (support == "interpolated") return names + ": interpolated. The techniques were fitted on other GPUs.";
+  return names +
+         ": uncalibrated. Rates are those of documents, efficiencies are assumed, and no interval can be "
+         "given. "
+         "Trust ratios on one GPU more than times.";
+}
+
+}  // namespace
+
 void note_limits(Report& report) {
   const std::vector<std::string> of_scenes = std::move(report.limits);
   report.limits.clear();
+  std::map<std::string, std::vector<std::string>> by_support;
   for (const ReportedPoint& point : report.points) {
     const Result& result = point.explanation.result;
-    const std::string name = result.technique + " on " + result.gpu;
-    if (result.frame.support == "extrapolated")
-      add_once(report.limits, name +
-                                  ": extrapolated. No published time of this technique, or of such a GPU, "
-                                  "was fitted.");
-    if (result.frame.support == "interpolated")
-      add_once(report.limits, name + ": interpolated. The technique was fitted on other GPUs.");
-    if (result.frame.support == "uncalibrated")
-      add_once(report.limits,
-               result.gpu +
-                   ": uncalibrated. Rates are those of documents, efficiencies are assumed, and no "
-                   "interval can be given. Trust ratios on one GPU more than times.");
+    const bool uncalibrated = result.frame.support == "uncalibrated";
+    if (result.frame.support != "calibrated")
+      add_once(by_support[result.frame.support],
+               uncalibrated ? result.gpu : result.technique + " on " + result.gpu);
+  }
+  for (const auto& [support, names] : by_support)
+    report.limits.push_back(support_limit(support, fmt::format("{}", fmt::join(names, ", "))));
+  for (const ReportedPoint& point : report.points) {
+    const Result& result = point.explanation.result;
     if (result.engine != "queue")
       add_once(report.limits, "The report's times are those of engine " + result.engine +
                                   "; moved hardware is timed by engine queue.");
-    for (const std::string& warning : result.warnings) add_once(report.limits, name + ": " + warning);
+    for (const std::string& warning : result.warnings)
+      add_once(report.limits, label_of(point) + ": " + warning);
   }
   for (const std::string& note : of_scenes) add_once(report.limits, note);
 }

@@ -22,11 +22,6 @@ constexpr std::string_view kPolicy =
     "'wasm-unsafe-eval'; base-uri 'none'; form-action 'none'";
 constexpr std::size_t kSpareBytes = 50'000;
 
-std::string label_of(const ReportedPoint& point) {
-  const Result& result = point.explanation.result;
-  return result.technique + " on " + result.gpu;
-}
-
 /// Values are kept as gray; this filter shows them in the colors of the error maps, without a script.
 std::string magma_filter() {
   constexpr int kStops = 33;
@@ -58,7 +53,9 @@ std::string header_of(const Report& report, const PageParts& parts) {
   html += "<aside class=\"limits\" id=\"limits\"><h2>Before you lean on it</h2><ul>";
   for (const std::string& limit : report.limits) html += "<li>" + html_text(limit) + "</li>";
   html +=
-      "<li>Not modeled: queues of more than one process, thermal limits, and drivers beyond their documented "
+      "<li>Not modeled: data that stays in caches from one pass to the next (a large L2 or last-level cache "
+      "saves more "
+      "than is said), queues of more than one process, thermal limits, and drivers beyond their documented "
       "costs.</li>";
   for (const std::string& missing : parts.missing)
     html += "<li class=\"missing\">This page lacks " + html_text(missing) + ".</li>";
@@ -132,9 +129,16 @@ std::string figures_of(const Report& report, std::size_t budget_bytes) {
 
 std::string studies_of(const Report& report) {
   std::string html;
-  if (report.ranking)
+  if (report.rankings.size() > 1)
+    html += section("overall", "Which technique in all views",
+                    "The worst verdict, the largest cost and the mean error of each technique.",
+                    html_table(overall_table(overall(report.rankings)), "overall") +
+                        html_table(best_table(report.rankings), "best"));
+  if (!report.rankings.empty())
     html += section("ranking", "Which technique", "Time, memory and error of the image, the best first.",
-                    html_table(ranking_table(*report.ranking), "ranking"));
+                    html_table(report.rankings.size() > 1 ? joined_table(report.rankings)
+                                                          : ranking_table(report.rankings.front()),
+                               "ranking"));
   if (report.comparison)
     html +=
         section("comparison", "What changed", "A change is (new - old) / |old| against the first row.",
@@ -142,8 +146,13 @@ std::string studies_of(const Report& report) {
                     "</summary>" + html_table(pass_comparison(*report.comparison), "passes") + "</details>");
   if (report.sweep)
     html += section(
-        "sweep", "Sweep", "Every point of the database, 2,000 at most.",
-        "<details open><summary>points</summary>" + html_table(*report.sweep, "points") + "</details>");
+        "sweep", "Sweep",
+        "What its points show together; the hardware above starts from the first point of each technique "
+        "and GPU.",
+        html_table(choice_table(report.sweep->findings.best), "the fastest") +
+            html_table(effect_table(report.sweep->findings.effects), "what mattered") +
+            "<details><summary>points, 2,000 at most</summary>" + html_table(report.sweep->rows, "points") +
+            "</details>");
   return html;
 }
 
@@ -157,7 +166,8 @@ std::string belief_of(const Belief& belief) {
   };
   return html_table(error_table(belief), "errors on what no fit saw") +
          folded("published times", published_table(belief)) +
-         folded("published ratios", ratio_table(belief)) + folded("other renderers", external_table(belief));
+         folded("published ratios", ratio_table(belief.ratios)) +
+         folded("other renderers", external_table(belief));
 }
 
 std::string belief_section(const Report& report) {
@@ -183,6 +193,13 @@ Body paper_body(const Report& report) {
               "Published, then predicted, then the error. Bold: the published value lies outside of the "
               "prediction's 90 % interval.",
               tables + paper_notes(*report.reproduction));
+  if (const auto ratios = ratios_of(report.belief, report.reproduction->paper); !ratios.empty())
+    body.before += section(
+        "order", "Who is faster than whom",
+        fmt::format("Pairs of techniques of one table, scene and GPU, by fits that had not seen the "
+                    "scene: {} of {} are in the published order.",
+                    in_published_order(ratios), ratios.size()),
+        "<details><summary>every pair</summary>" + html_table(ratio_table(ratios), "pairs") + "</details>");
   body.before +=
       section("residuals", "Where it errs", "Predicted over published, by stage and technique.",
               "<details><summary>every row</summary>" +

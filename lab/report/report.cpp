@@ -101,7 +101,10 @@ Json memory_json(const FrameMemory& memory) {
 }
 
 Json point_json(const ReportedPoint& point) {
-  return {{"technique", point.technique},
+  return {{"label", label_of(point)},
+          {"view", point.view},
+          {"pictures", point.pictures_of},
+          {"technique", point.technique},
           {"view_words", point.view_words},
           {"gpu_hash", content_hash(point.gpu)},
           {"functional_hash", functional_hash(point.gpu)},
@@ -126,11 +129,6 @@ Json list_of(const std::vector<T>& parts, const Function& json_of) {
   return json;
 }
 
-std::string label_of(const ReportedPoint& point) {
-  const Result& result = point.explanation.result;
-  return result.technique + " on " + result.gpu;
-}
-
 std::string point_sentence(const ReportedPoint& point) {
   const Result& result = point.explanation.result;
   std::string text =
@@ -143,8 +141,6 @@ std::string point_sentence(const ReportedPoint& point) {
   return text;
 }
 
-std::string label_of(const Result& result) { return result.technique + " on " + result.gpu; }
-
 /// " [9.1, 12.5]": of a ratio, from the interval of the change.
 std::string ratio_interval(const std::optional<std::array<double, 2>>& change) {
   if (!change) return {};
@@ -153,12 +149,12 @@ std::string ratio_interval(const std::optional<std::array<double, 2>>& change) {
 
 std::string extremes_sentence(const Report& report) {
   const auto [fast, slow] = extremes_of(report);
+  const FrameResult &least = fast->explanation.result.frame, &most = slow->explanation.result.frame;
   return fmt::format(
       "The fastest of {} points is \u201c{}\u201d: {}. The slowest, \u201c{}\u201d, takes "
       "{:.3g}{} times as long: {}.",
-      report.points.size(), label_of(*fast), headline_time(fast->frame), label_of(*slow),
-      slow->frame.time_ms / fast->frame.time_ms, ratio_interval(report.spread_interval),
-      headline_time(slow->frame));
+      report.points.size(), label_of(*fast), headline_time(least), label_of(*slow),
+      most.time_ms / least.time_ms, ratio_interval(report.spread_interval), headline_time(most));
 }
 
 std::string change_sentence(const Comparison& comparison) {
@@ -174,39 +170,58 @@ std::string change_sentence(const Comparison& comparison) {
                      most.label, 100.0 * change, interval, most.time_ms.before, most.time_ms.after);
 }
 
-std::string ranking_sentence(const Ranking& ranking) {
-  const RankedTechnique& best = ranking.techniques.front();
-  const bool within = best.verdict == "ok" || best.verdict == "unknown" || best.verdict == "at risk";
-  if (!within) return fmt::format("No technique stays within the budget {}.", ranking.budget);
-  return fmt::format(
-      "{} has the least error{}: FLIP {:.4f}, {:+.3f} ms and {:+.1f} MiB beyond no anti-aliasing ({}).",
-      best.technique, ranking.budget.empty() ? "" : " within the budget " + ranking.budget, best.flip_mean,
-      best.aa_ms, best.extra_mib, best.verdict);
+std::string choice_text(const SweepChoice& choice) {
+  std::string text;
+  for (const auto& [axis, value] : choice.what) text += (text.empty() ? "" : ", ") + axis + " " + value;
+  return text;
 }
 
-std::string reproduction_sentence(const Reproduction& reproduction) {
+std::string sweep_sentence(const SweepFindings& found) {
+  std::string text =
+      fmt::format("{} points take {:.3g} to {:.3g} ms.", found.points, found.fastest_ms, found.slowest_ms);
+  if (!found.best.empty() && !found.best.front().what.empty())
+    text += " The fastest: " + choice_text(found.best.front()) + ".";
+  if (!found.effects.empty())
+    text += fmt::format(" {} matters most: {:.0f} % of the variance, {:.3g} times as long at {} as at {}.",
+                        found.effects.front().axis, 100.0 * found.effects.front().share_ratio,
+                        found.effects.front().slowest_ms / found.effects.front().fastest_ms,
+                        found.effects.front().slowest, found.effects.front().fastest);
+  return text;
+}
+
+std::string reproduction_sentence(const Reproduction& reproduction, const Belief& belief) {
   if (!reproduction.figures) return "No fitted time of " + reproduction.paper + " could be predicted.";
   const cost_models::Figures& f = *reproduction.figures;
-  return fmt::format(
+  std::string text = fmt::format(
       "Of {}'s {} fitted times, predictions miss by {:.1f} % in the mean and {:.1f} % in the median; {:.0f} "
       "% lie within "
       "their 90 % intervals.",
       reproduction.paper, f.cells, f.mape_pct, f.median_ape_pct, f.coverage90_pct);
+  if (const auto ratios = ratios_of(belief, reproduction.paper); !ratios.empty())
+    text += fmt::format(" Of {} pairs of techniques that it compares, {} are predicted in its order.",
+                        ratios.size(), in_published_order(ratios));
+  return text;
 }
 
 }  // namespace
 
-std::pair<const Result*, const Result*> extremes_of(const Report& report) {
+std::string label_of(const ReportedPoint& point) {
+  const Result& result = point.explanation.result;
+  return result.technique + " on " + result.gpu + (point.view.empty() ? "" : ", " + point.view);
+}
+
+std::pair<const ReportedPoint*, const ReportedPoint*> extremes_of(const Report& report) {
   const auto time = [](const ReportedPoint& point) { return point.explanation.result.frame.time_ms; };
   const auto [fast, slow] = std::ranges::minmax_element(report.points, std::less{}, time);
-  return {&fast->explanation.result, &slow->explanation.result};
+  return {&*fast, &*slow};
 }
 
 std::string answer_of(const Report& report) {
-  if (report.reproduction) return reproduction_sentence(*report.reproduction);
-  if (report.ranking && !report.ranking->techniques.empty()) return ranking_sentence(*report.ranking);
+  if (report.reproduction) return reproduction_sentence(*report.reproduction, report.belief);
+  if (!report.rankings.empty()) return answer_of(report.rankings) + ".";
   if (report.comparison && !report.comparison->differences.empty())
     return change_sentence(*report.comparison);
+  if (report.sweep && report.sweep->findings.points > 1) return sweep_sentence(report.sweep->findings);
   if (report.points.size() > 1) return extremes_sentence(report);
   return point_sentence(report.points.front());
 }
@@ -217,25 +232,26 @@ Json to_json(const Report& report) {
     return Json{{"label", v.label}, {"point", v.point}, {"values", values_json(v.gpu)}};
   };
   const auto region_json = [](const Region& r) { return Json{{"x", r.x}, {"y", r.y}, {"side", r.side}}; };
-  Json json = {{"schema_version", kReportSchemaVersion},
-               {"version", build.version},
-               {"commit", build.commit},
-               {"command", report.command},
-               {"title", report.title},
-               {"answer", answer_of(report)},
-               {"limits", report.limits},
-               {"keys", keys_json()},
-               {"gpus", list_of(report.gpus, gpu_json)},
-               {"catalog_hashes", report.catalog_hashes},
-               {"intervals", intervals_json(report.intervals)},
-               {"points", list_of(report.points, point_json)},
-               {"what_ifs", list_of(report.what_ifs, what_if_json)},
-               {"variations", list_of(report.variations, variation_json)},
-               {"regions", list_of(report.regions, region_json)},
-               {"ranking", report.ranking ? to_json(*report.ranking) : Json(nullptr)},
-               {"comparison", report.comparison ? to_json(*report.comparison) : Json(nullptr)},
-               {"sweep", report.sweep ? to_json(*report.sweep) : Json(nullptr)},
-               {"reproduction", report.reproduction ? to_json(*report.reproduction) : Json(nullptr)}};
+  Json json = {
+      {"schema_version", kReportSchemaVersion},
+      {"version", build.version},
+      {"commit", build.commit},
+      {"command", report.command},
+      {"title", report.title},
+      {"answer", answer_of(report)},
+      {"limits", report.limits},
+      {"keys", keys_json()},
+      {"gpus", list_of(report.gpus, gpu_json)},
+      {"catalog_hashes", report.catalog_hashes},
+      {"intervals", intervals_json(report.intervals)},
+      {"points", list_of(report.points, point_json)},
+      {"what_ifs", list_of(report.what_ifs, what_if_json)},
+      {"variations", list_of(report.variations, variation_json)},
+      {"regions", list_of(report.regions, region_json)},
+      {"rankings", list_of(report.rankings, [](const Ranking& ranking) { return to_json(ranking); })},
+      {"comparison", report.comparison ? to_json(*report.comparison) : Json(nullptr)},
+      {"sweep", report.sweep ? to_json(report.sweep->rows) : Json(nullptr)},
+      {"reproduction", report.reproduction ? to_json(*report.reproduction) : Json(nullptr)}};
   json.update(to_json(report.belief));
   return json;
 }

@@ -15,6 +15,7 @@
 #include "lab/studies/explanation.h"
 #include "lab/studies/paper_layout.h"
 #include "lab/studies/ranking.h"
+#include "lab/studies/sweep_findings.h"
 
 namespace hwsim::lab {
 
@@ -37,11 +38,13 @@ struct ReportedPoint {
   Explanation explanation{};
   std::string technique{};   ///< with all its options
   std::string view_words{};  ///< the scene and the flags that give the same view: "hall --resolution 320x180"
+  std::string view{};  ///< what of it differs between the report's points: "street, 640x360"; empty: nothing
   GpuConfig gpu{};
   bool calibrated = true;             ///< its times have intervals where its GPU was fitted
   std::vector<std::uint8_t> trace{};  ///< encode_trace()
   FrameMemory memory{};
-  PointPictures pictures{};
+  PointPictures pictures{};                ///< none where an earlier point has the very same
+  std::size_t pictures_of = 0;             ///< the index of the point that has them
   std::optional<std::size_t> reference{};  ///< index into Report::references
 };
 
@@ -65,6 +68,12 @@ struct TriedVariation {
   GpuConfig gpu{};
 };
 
+/// The points of a sweep's database, and what they show together.
+struct ReportedSweep {
+  Table rows{};  ///< every point, up to a limit
+  SweepFindings findings{};
+};
+
 struct Report {
   std::string command{};  ///< that repeats it
   std::string title{};
@@ -78,17 +87,20 @@ struct Report {
   std::map<std::string, std::string> catalog_hashes{};    ///< content_hash by id of the GPUs that hwsim has
   std::vector<WhatIf> what_ifs{};
   std::vector<TriedVariation> variations{};
-  std::optional<Ranking> ranking{};
+  std::vector<Ranking> rankings{};
   std::optional<Comparison> comparison{};
-  std::optional<Table> sweep{};
+  std::optional<ReportedSweep> sweep{};
   std::optional<Reproduction> reproduction{};
   std::vector<PaperTable> paper_tables{};  ///< those of the reproduction
   Belief belief{};
   std::vector<std::string> limits{};  ///< what is not modeled, extrapolated, or by default
 };
 
+/// "msaa4x on gtx980", and the view where points have several: what the page calls a point.
+std::string label_of(const ReportedPoint& point);
+
 /// The fastest and the slowest of the points, of which there must be one.
-std::pair<const Result*, const Result*> extremes_of(const Report& report);
+std::pair<const ReportedPoint*, const ReportedPoint*> extremes_of(const Report& report);
 
 /// The answer in a sentence: what was found, with its interval.
 std::string answer_of(const Report& report);

@@ -36,10 +36,11 @@ ReportInput read_json(const std::string& path) try {
   ReportInput input;
   if (json.contains("baseline"))
     input.comparison = comparison_from_json(json);
-  else if (json.contains("techniques"))
-    input.ranking = ranking_from_json(json);
+  else if (json.contains("techniques") || json.contains("rankings"))
+    input.rankings = rankings_from_json(json);
   else
     no_input(path);
+  std::erase_if(input.rankings, [](const Ranking& ranking) { return ranking.techniques.empty(); });
   return input;
 } catch (const Json::exception& error) {
   fail("U020", "`" + path + "` is no answer of `hwsim compare` or `hwsim rank`: " + error.what());
@@ -49,9 +50,9 @@ ReportInput read_json(const std::string& path) try {
 ReportInput read_sweep(const std::string& path) {
   ReportInput input;
   const RowSource rows = sweep_rows(path);
-  input.sweep = Table{rows.columns, {}};
+  ReportedSweep& sweep = input.sweep.emplace(ReportedSweep{{rows.columns, {}}, findings_of(rows)});
   rows.each([&](const std::vector<TableCell>& row) {
-    if (input.sweep->rows.size() < kSweepRows) input.sweep->rows.push_back(row);
+    if (sweep.rows.rows.size() < kSweepRows) sweep.rows.rows.push_back(row);
   });
   Database database = open_sweep(path, SweepAccess::look);
   Database::Statement select(
@@ -82,16 +83,26 @@ void order_as_asked(std::vector<Request>& requests, const fs::path& manifest) {
   });
 }
 
-ReportInput read_folder(const fs::path& folder) {
-  ReportInput input;
-  if (is_there(folder / "ranking.json"))
-    input.ranking = read_json((folder / "ranking.json").string()).ranking;
+/// Of one run, of several side by side, or of several in each view of a ranking.
+std::vector<fs::path> run_files(const fs::path& folder) {
   std::vector<fs::path> files;
   if (is_there(folder / "run.toml")) files.push_back(folder / "run.toml");
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-    if (is_there(entry.path() / "run.toml")) files.push_back(entry.path() / "run.toml");
+  fs::recursive_directory_iterator entries(folder, error);
+  constexpr int kDeepest = 1;  // folders of a view hold folders of points
+  for (; !error && entries != fs::end(entries); entries.increment(error)) {
+    if (is_there(entries->path() / "run.toml")) files.push_back(entries->path() / "run.toml");
+    if (entries.depth() >= kDeepest) entries.disable_recursion_pending();
+  }
   std::ranges::sort(files);
+  return files;
+}
+
+ReportInput read_folder(const fs::path& folder) {
+  ReportInput input;
+  for (const char* file : {"ranking.json", "rankings.json"})
+    if (is_there(folder / file)) input.rankings = read_json((folder / file).string()).rankings;
+  const std::vector<fs::path> files = run_files(folder);
   for (const fs::path& file : files) input.requests.push_back(read_run_file(file.string()));
   order_as_asked(input.requests, folder / "manifest.json");
   if (files.empty()) no_input(folder.string());

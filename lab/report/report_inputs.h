@@ -7,18 +7,16 @@
 #include <vector>
 
 #include "lab/base/files.h"
-#include "lab/base/table.h"
+#include "lab/report/report.h"
 #include "lab/request/request.h"
-#include "lab/studies/comparison.h"
-#include "lab/studies/ranking.h"
 
 namespace hwsim::lab {
 
 struct ReportInput {
   std::vector<Request> requests{};  ///< a point each
-  std::optional<Ranking> ranking{};
+  std::vector<Ranking> rankings{};
   std::optional<Comparison> comparison{};
-  std::optional<Table> sweep{};
+  std::optional<ReportedSweep> sweep{};
   std::shared_ptr<const TemporaryFolder> files{};  ///< that requests of a sweep name
 };
 

@@ -66,8 +66,8 @@ std::string_view verdict(const Costs& costs, const std::vector<Limit>& budget) {
       continue;
     }
     const auto& interval = costs.*quantity.interval;
-    over_time = over_time || (interval ? (*interval)[0] : value) > limit.at_most;
-    at_risk = at_risk || (interval ? (*interval)[1] : value) > limit.at_most;
+    over_time = over_time || value > limit.at_most;
+    at_risk = at_risk || (interval && (*interval)[1] > limit.at_most);
     unknown = unknown || (!interval && value > 0.0);
   }
   return over_memory ? "over memory"

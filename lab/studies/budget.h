@@ -23,8 +23,8 @@ struct Limit {
 /// Throws InputError U022.
 std::vector<Limit> parse_budget(const std::string& text);
 
-/// ok, unknown (a time without an interval is within the limit), at risk (the interval crosses a limit), over
-/// time, over memory. Memory is counted, not predicted: it has no interval.
+/// ok, unknown (a time without an interval is within the limit), at risk (within the limit, the upper end of
+/// the interval beyond it), over time, over memory. Memory is counted, not predicted: it has no interval.
 std::string_view verdict(const Costs& costs, const std::vector<Limit>& budget);
 
 }  // namespace hwsim::lab

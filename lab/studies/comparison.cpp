@@ -191,8 +191,18 @@ std::optional<double> relative_change(double before, double after) {
   return (after - before) / std::abs(before);
 }
 
-std::optional<std::array<double, 2>> time_change_interval(const Result& before, const Result& after,
-                                                          const cost_models::Calibration& calibration) {
+double shared_time_ms(const Result& before, const Result& after) {
+  if (before.gpu != after.gpu || before.scene != after.scene || before.resolution != after.resolution)
+    return 0.0;
+  double shared_ms = 0.0;
+  for (const PassResult& pass : before.passes)
+    if (const PassResult* other = find_pass(after, pass.name); other && other->time_ms == pass.time_ms)
+      shared_ms += pass.time_ms;
+  return std::min({shared_ms, before.frame.time_ms, after.frame.time_ms});
+}
+
+std::optional<double> ratio_log_width(const Result& before, const Result& after,
+                                      const cost_models::Calibration& calibration) {
   const cost_models::Likeness likeness{
       .technique = before.technique == after.technique,
       .gpu = before.gpu == after.gpu,
@@ -200,9 +210,18 @@ std::optional<std::array<double, 2>> time_change_interval(const Result& before, 
       .support = std::max(support_of(before.frame), support_of(after.frame))};
   const std::optional<double> half = cost_models::ratio_half_width(calibration, before.frame.error_sources,
                                                                    after.frame.error_sources, likeness);
-  if (!half || before.frame.time_ms <= 0.0) return std::nullopt;
-  const double ratio = after.frame.time_ms / before.frame.time_ms;
-  return std::array{ratio / *half - 1.0, ratio * *half - 1.0};
+  return half ? std::optional(std::log(*half)) : std::nullopt;
+}
+
+std::optional<std::array<double, 2>> time_change_interval(const Result& before, const Result& after,
+                                                          const cost_models::Calibration& calibration) {
+  const std::optional<double> width = ratio_log_width(before, after, calibration);
+  if (!width || before.frame.time_ms <= 0.0) return std::nullopt;
+  const double shared_ms = before.technique == after.technique ? 0.0 : shared_time_ms(before, after);
+  const auto end = [&](double factor) {
+    return (shared_ms + (after.frame.time_ms - shared_ms) * factor) / before.frame.time_ms - 1.0;
+  };
+  return std::array{end(std::exp(-*width)), end(std::exp(*width))};
 }
 
 Comparison compare(const std::vector<LabeledResult>& results, const cost_models::Calibration* calibration) {

@@ -54,8 +54,17 @@ struct Comparison {
 /// first of all; there must be one. `calibration` may be null: no intervals.
 Comparison compare(const std::vector<LabeledResult>& results, const cost_models::Calibration* calibration);
 
+/// What passes take that both frames have alike: two techniques' shadow map, or all that comes before a
+/// filter. 0 for other GPUs, scenes or sizes.
+double shared_time_ms(const Result& before, const Result& after);
+
+/// The logarithm of the factor from a ratio of two times to the ends of its 90 % interval; none without
+/// intervals of both.
+std::optional<double> ratio_log_width(const Result& before, const Result& after,
+                                      const cost_models::Calibration& calibration);
+
 /// 90 % interval of the relative change of the time from one result to another; none without intervals of
-/// both.
+/// both. Of two techniques, what passes take that both have alike is as wrong in both.
 std::optional<std::array<double, 2>> time_change_interval(const Result& before, const Result& after,
                                                           const cost_models::Calibration& calibration);
 

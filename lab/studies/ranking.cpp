@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kRegionSidePx = 48, kRegions = 4;
 
-/// Within the budget, then without an interval that could say so, then at risk, then the others.
+/// The worse, the more.
 int grade(const std::string& verdict) {
   if (verdict == "ok") return 0;
   if (verdict == "unknown") return 1;
@@ -19,24 +19,33 @@ int grade(const std::string& verdict) {
   return verdict == "unsupported" ? 4 : 3;
 }
 
+/// Techniques of one class are ordered by their error. A GPU without intervals has "ok" for what costs
+/// nothing alone, "unknown" for the others: were it a class behind, no anti-aliasing would always be the
+/// first.
+int order_class(const std::string& verdict) { return verdict == "unknown" ? 0 : grade(verdict); }
+
 bool beats(const RankedTechnique& a, const RankedTechnique& b) {
   const double time = a.frame_ms - b.frame_ms;
   const double error = a.error - b.error;
   return a.runs() && time <= 0.0 && error <= 0.0 && (time < 0.0 || error < 0.0);
 }
 
-/// 90 % interval of what `after` takes beyond `before`. Two errors add up: the one that both frames have in
-/// common, which acts on the difference, and that of their ratio, which acts on the frame.
+/// 90 % interval of what `after` takes beyond `before`. With a and b, what each takes in passes that the
+/// other lacks, and the frames' errors c + i of equal spread, c the same in both: the variance of a - b is (a
+/// - b)^2 var(c + i) + a b var(i_a - i_b), whose first factor is that of one frame and whose second that of a
+/// ratio.
 std::optional<std::array<double, 2>> extra_interval(const Result& before, const Result& after,
                                                     const cost_models::Calibration* calibration) {
-  const double extra_ms = after.frame.time_ms - before.frame.time_ms;
   if (!after.frame.interval_ms) return std::nullopt;
   if (after.technique == before.technique) return std::array{0.0, 0.0};
-  const auto change = calibration ? time_change_interval(before, after, *calibration) : std::nullopt;
-  if (!change) return std::nullopt;
-  const double common = std::log((*after.frame.interval_ms)[1] / after.frame.time_ms) * extra_ms;
-  const double own = 0.5 * std::log((1.0 + (*change)[1]) / (1.0 + (*change)[0])) * after.frame.time_ms;
-  const double half_ms = std::hypot(common, own);
+  const auto ratio = calibration ? ratio_log_width(before, after, *calibration) : std::nullopt;
+  if (!ratio) return std::nullopt;
+  const double shared_ms = shared_time_ms(before, after);
+  const double own_ms = after.frame.time_ms - shared_ms, others_ms = before.frame.time_ms - shared_ms;
+  const double extra_ms = own_ms - others_ms;
+  const double frame = std::log((*after.frame.interval_ms)[1] / after.frame.time_ms);
+  if (others_ms <= 0.0) return std::array{extra_ms * std::exp(-frame), extra_ms * std::exp(frame)};
+  const double half_ms = std::hypot(frame * extra_ms, *ratio * std::sqrt(own_ms * others_ms));
   return std::array{extra_ms - half_ms, extra_ms + half_ms};
 }
 
@@ -107,7 +116,8 @@ std::optional<EdgeError> RankingSink::edges_of(const PointResult& point, const R
 void RankingSink::point(const PointResult& point, const RunContext& run) {
   OnGpu& on = of(*point.gpu);
   Result result = make_result(point, run.plan, run.scene.name);
-  result.passes.clear();
+  for (PassResult& pass : result.passes)
+    pass = {.name = pass.name, .time_ms = pass.time_ms};  // all that is needed
   const FrameResult& frame = on.results.emplace_back(std::move(result)).frame;
   RankedTechnique& technique = on.ranking.techniques.emplace_back();
   technique.technique = algos::technique_text(*point.technique);
@@ -158,7 +168,7 @@ Ranking RankingSink::judged(const OnGpu& collected) const {
   }
   mark_pareto(ranking.techniques);
   std::ranges::stable_sort(ranking.techniques, {}, [](const RankedTechnique& technique) {
-    return std::pair(grade(technique.verdict), technique.error);
+    return std::pair(order_class(technique.verdict), technique.error);
   });
   if (!shown_.empty()) ranking.regions = worst_regions(shown_, kRegionSidePx, kRegions);
   return ranking;
@@ -185,10 +195,12 @@ std::vector<OverallTechnique> overall(const std::vector<Ranking>& rankings) {
       const bool first = found->rankings++ == 0;
       found->aa_ms_most = first ? ranked.aa_ms : std::max(found->aa_ms_most, ranked.aa_ms);
       found->extra_mib_most = first ? ranked.extra_mib : std::max(found->extra_mib_most, ranked.extra_mib);
+      found->metric = ranking.metric;
+      found->edges = ranking.edges;
       found->error_mean += (ranked.error - found->error_mean) / static_cast<double>(found->rankings);
     }
   std::ranges::stable_sort(all, {}, [](const OverallTechnique& technique) {
-    return std::pair(grade(technique.verdict), technique.error_mean);
+    return std::pair(order_class(technique.verdict), technique.error_mean);
   });
   return all;
 }

@@ -26,6 +26,9 @@ struct RankedTechnique;
 /// How far an image is from the reference, at edges where they were asked for: less is closer.
 double error_by(ErrorMetric metric, const RankedTechnique& technique);
 
+/// The same as the metric prints it: dB of PSNR, SSIM, mean FLIP.
+double shown_error(const std::string& metric, double error);
+
 /// How techniques are judged.
 struct RankQuestion {
   std::string budget{};  ///< "aa_ms<=1.5, extra_mib<=192"; empty: none
@@ -69,7 +72,9 @@ struct OverallTechnique {
   std::string verdict{};     ///< the worst of all
   std::size_t rankings = 0;  ///< that it runs in
   double aa_ms_most = 0.0, extra_mib_most = 0.0;
-  double error_mean = 0.0;  ///< the mean of RankedTechnique::error
+  double error_mean = 0.0;      ///< the mean of RankedTechnique::error
+  std::string metric = "flip";  ///< that the error is of, as Ranking has it
+  bool edges = false;
 };
 
 /// By verdict, then by error; techniques that run nowhere are last.
@@ -134,5 +139,13 @@ Table ranking_table(const Ranking& ranking);
 Table joined_table(const std::vector<Ranking>& rankings);
 Table overall_table(const std::vector<OverallTechnique>& techniques);
 nlohmann::ordered_json to_json(const std::vector<Ranking>& rankings);
+/// Of one ranking or of several. Throws nlohmann::json::exception where a field is missing or of another
+/// type.
+std::vector<Ranking> rankings_from_json(const nlohmann::ordered_json& json);
+
+/// Which technique, in a sentence; there must be a ranking, and each must have a technique.
+std::string answer_of(const std::vector<Ranking>& rankings);
+/// The best technique of each ranking, under the same condition.
+Table best_table(const std::vector<Ranking>& rankings);
 
 }  // namespace hwsim::lab

@@ -131,6 +131,13 @@ Ranking ranking_from_json(const Json& json) {
   return ranking;
 }
 
+std::vector<Ranking> rankings_from_json(const Json& json) {
+  if (!json.contains("rankings")) return {ranking_from_json(json)};
+  std::vector<Ranking> rankings;
+  for (const Json& ranking : json.at("rankings")) rankings.push_back(ranking_from_json(ranking));
+  return rankings;
+}
+
 Table joined_table(const std::vector<Ranking>& rankings) {
   Table joined;
   for (const Ranking& ranking : rankings) {
@@ -151,20 +158,28 @@ Table joined_table(const std::vector<Ranking>& rankings) {
   return joined;
 }
 
+double shown_error(const std::string& metric, double error) {
+  return metric == "psnr" ? -error : metric == "ssim" ? 1.0 - error : error;
+}
+
 Table overall_table(const std::vector<OverallTechnique>& techniques) {
+  const OverallTechnique first = techniques.empty() ? OverallTechnique{} : techniques.front();
+  const bool psnr = first.metric == "psnr", ssim = first.metric == "ssim";
+  const std::string of = psnr ? "PSNR dB" : ssim ? "SSIM" : "FLIP";
   Table table{{{"technique", "technique"},
                {"verdict", "worst verdict"},
                {"rankings", "runs in", true},
                {"aa_ms_most", "AA ms at most", true},
                {"extra_mib_most", "extra MiB at most", true},
-               {"error_mean", "mean error", true}},
+               {"mean_" + first.metric, std::string("mean ") + (first.edges ? "edge " : "") + of, true}},
               {}};
   for (const OverallTechnique& t : techniques) {
     const auto value = [&](double number, int decimals) -> TableCell {
       return t.rankings > 0 ? TableCell{Real{number, decimals}} : TableCell{NotApplicable{}};
     };
     table.rows.push_back({t.technique, t.verdict, std::uint64_t{t.rankings}, value(t.aa_ms_most, 3),
-                          value(t.extra_mib_most, 1), value(t.error_mean, 4)});
+                          value(t.extra_mib_most, 1),
+                          value(shown_error(t.metric, t.error_mean), psnr ? 2 : 4)});
   }
   return table;
 }

@@ -37,8 +37,7 @@ export class Model {
   }
 
   label(point) {
-    const { technique, gpu } = this.data.points[point].explanation;
-    return `${technique} on ${gpu}`;
+    return this.data.points[point].label;
   }
 
   ownGpu(point) {

@@ -4,11 +4,13 @@ import { element, folded, shown } from "./dom.js";
 
 function pointsOf(page) {
   const { model } = page;
+  const severalGpus = new Set(model.data.points.map((point) => point.explanation.gpu)).size > 1;
   return model.data.points
     .map((point, i) => {
       const { technique, gpu, frame, image } = point.explanation;
       const [low, high] = frame.interval_ms ?? [frame.time_ms, frame.time_ms];
-      return image && { label: technique, gpu, index: i, time: frame.time_ms, low, high, error: image.flip_mean, memory: frame.memory_mib };
+      const place = [severalGpus ? gpu : "", point.view].filter(Boolean).join(", ");
+      return image && { label: technique, place, name: place ? `${technique} (${place})` : technique, gpu, view: point.view, index: i, time: frame.time_ms, low, high, error: image.flip_mean, memory: frame.memory_mib };
     })
     .filter(Boolean);
 }
@@ -29,7 +31,8 @@ export class ParetoPanel {
       return;
     }
     this.points = points;
-    const high = Math.max(...points.map((d) => d.time));
+    this.places = [...new Set(points.map((d) => d.place))];
+    const high = Math.max(...points.map((d) => Math.min(d.high, 2 * d.time)));
     this.line = element("input", { type: "range", id: "budget", min: 0, max: 1000, value: 1000 });
     this.line.addEventListener("input", () => this.#draw());
     this.say = element("output", { for: "budget" });
@@ -46,7 +49,7 @@ export class ParetoPanel {
   #draw() {
     const { points, budget } = this;
     const within = points.filter((d) => d.time <= budget).sort((a, b) => a.error - b.error);
-    this.say.textContent = `${shown(budget)} ms: ${within.length ? `${within[0].label} has the least error` : "nothing is within"}`;
+    this.say.textContent = `${shown(budget)} ms: ${within.length ? `${within[0].name} has the least error` : "nothing is within"}`;
     this.box.replaceChildren();
     const svg = chart(this.box, {
       ariaLabel: "error of the image against time",
@@ -57,16 +60,16 @@ export class ParetoPanel {
       y: { label: "error (FLIP)", grid: true, insetTop: 34, insetBottom: 24 },
       r: { range: [4, 22], domain: [0, Math.max(...points.map((d) => d.memory))] },
       marks: [
-        Plot.line(frontOf(points), { x: "time", y: "error", stroke: "#0072b2", strokeDasharray: "4,3" }),
+        ...this.places.map((place) => Plot.line(frontOf(points.filter((d) => d.place === place)), { x: "time", y: "error", stroke: "#0072b2", strokeDasharray: "4,3" })),
         Plot.ruleY(points, { x1: "low", x2: (d) => Math.min(d.high, this.high), y: "error", stroke: "currentColor", strokeOpacity: 0.45 }),
-        Plot.dot(points, { x: "time", y: "error", r: "memory", fill: (d) => (d.time <= budget ? "#56b4e9" : "#b8b8b8"), stroke: "currentColor", fillOpacity: 0.85, title: (d) => `${d.label} on ${d.gpu}: ${shown(d.time)} ms, FLIP ${d.error.toFixed(4)}, ${shown(d.memory)} MiB` }),
-        Plot.text(points, { x: "time", y: "error", text: "label", dy: -16, stroke: "var(--paper)", strokeWidth: 3, fill: "currentColor" }),
+        Plot.dot(points, { x: "time", y: "error", r: "memory", fill: (d) => (d.time <= budget ? "#56b4e9" : "#b8b8b8"), stroke: "currentColor", fillOpacity: 0.85, title: (d) => `${d.name}: ${shown(d.time)} ms, FLIP ${d.error.toFixed(4)}, ${shown(d.memory)} MiB` }),
+        Plot.text(points, { x: "time", y: "error", text: "name", dy: -16, stroke: "var(--paper)", strokeWidth: 3, fill: "currentColor" }),
         Plot.ruleX([budget], { stroke: "#d55e00", strokeWidth: 3 }),
       ],
     });
     this.#drag(svg);
     if (!this.table) {
-      this.table = folded("error against time", [{ id: "label", title: "technique" }, { id: "gpu", title: "GPU" }, { id: "time", title: "ms" }, { id: "low", title: "from" }, { id: "high", title: "to" }, { id: "error", title: "FLIP" }, { id: "memory", title: "MiB" }], points);
+      this.table = folded("error against time", [{ id: "label", title: "technique" }, { id: "gpu", title: "GPU" }, { id: "view", title: "view" }, { id: "time", title: "ms" }, { id: "low", title: "from" }, { id: "high", title: "to" }, { id: "error", title: "FLIP" }, { id: "memory", title: "MiB" }], points);
       this.mount.append(this.table);
     }
   }

@@ -15,7 +15,7 @@ export class PicturePanel {
     this.page = page;
     this.sources = page.model.data.points
       .map((point, i) => ({ point, index: i, label: page.model.label(i) }))
-      .filter(({ index }) => document.getElementById(`color-${index}`));
+      .filter(({ point }) => document.getElementById(`color-${point.pictures}`));
     if (this.sources.length === 0) {
       mount.append(element("p", {}, "The points have no images: they were run with --no-image."));
       return;
@@ -31,7 +31,8 @@ export class PicturePanel {
     this.stage = element("div", { class: "stage" }, this.slider, this.marks);
     this.frame = element("div", { class: "stage-frame" }, this.stage);
     this.say = element("p", { class: "readout", "aria-live": "polite" });
-    mount.append(this.choices, this.#buttons(), this.frame, this.say, this.#legend(), this.#crops());
+    const fit = document.querySelector("#pictures .note")?.textContent ?? "";
+    mount.append(this.choices, this.#buttons(), this.frame, this.say, this.#legend(), this.#crops(), element("p", { class: "fit" }, fit));
     this.zoom = Panzoom(this.stage, { maxScale: 16, contain: "outside", excludeClass: "handle", cursor: "crosshair", pinchAndPan: true });
     this.frame.addEventListener("wheel", (event) => event.ctrlKey && this.zoom.zoomWithWheel(event));
     this.frame.addEventListener("pointermove", (event) => this.#read(event));
@@ -44,9 +45,8 @@ export class PicturePanel {
   }
 
   #element(which, kind) {
-    if (which === this.sources.length) return this.#reference(0);
-    const { index } = this.sources[which];
-    return document.getElementById(`${KINDS[kind].id}-${index}`);
+    if (which === this.sources.length) return this.#reference(Math.min(this.pick.left, this.pick.right) % this.sources.length);
+    return document.getElementById(`${KINDS[kind].id}-${this.sources[which].point.pictures}`);
   }
 
   #makeChoices() {
@@ -89,8 +89,9 @@ export class PicturePanel {
   // Where the images of the points err most.
   #mark() {
     const { regions, points } = this.page.model.data;
-    const { resolution } = points[0].explanation;
-    const [width, height] = resolution;
+    const [width, height] = points[0].explanation.resolution;
+    const shownView = this.sources[Math.min(this.pick.left, this.pick.right) % this.sources.length].point.view_words;
+    this.marks.hidden = shownView !== points[0].view_words;
     this.marks.replaceChildren(
       ...regions.map((region, i) =>
         element("span", { class: "mark", style: `left:${(100 * region.x) / width}%;top:${(100 * region.y) / height}%;width:${(100 * region.side) / width}%;height:${(100 * region.side) / height}%` }, String(i + 1)),
@@ -109,7 +110,7 @@ export class PicturePanel {
       this.zoom.pan(at(region.x, width, box.width), at(region.y, height, box.height), { animate: false });
     };
     if (regions.length === 0) return element("p");
-    return element("div", { class: "buttons crops" }, element("span", {}, "Where the images err most: "), ...regions.map((region, i) => element("button", { type: "button", onclick: () => go(region) }, String(i + 1))));
+    return element("div", { class: "buttons crops" }, element("span", {}, points.some((point) => point.view_words !== points[0].view_words) ? `Where the images of ${points[0].view || points[0].view_words} err most: ` : "Where the images err most: "), ...regions.map((region, i) => element("button", { type: "button", onclick: () => go(region) }, String(i + 1))));
   }
 
   #legend() {

@@ -149,7 +149,7 @@ TEST_F(RankTest, MistakesEndInMessages) {
   };
   for (const char* budget : {"'aa_ms<1'", "'aa_ms<=x'", "'am_ms<=1'", "'aa_ms<=1,'", "'<=1'", "'aa_ms<=nan'"})
     refused("--budget " + std::string(budget), "U022");
-  refused("--vary gpu.core_clock_mhz=1,2", "U004");
+  refused("--vary gpu.core_clock_mhz=1,2", "U019");
   refused("--metric psrn", "U003");
   refused("--metric ssim --edges", "U003");
   // The last view's mistake comes before the first one's frames.

@@ -169,6 +169,29 @@ TEST(Lab, RankPutsTechniquesWithinTheBudgetFirstAndNoneAmongThem) {
   EXPECT_EQ(mistakes([&] { lab.rank(request); }), std::vector<std::string>{"U004"});
 }
 
+// A filter comes behind the passes that `none` has too: these are as wrong in both frames, however long they
+// take.
+TEST(Lab, RankAndCompareKnowWhatAFilterAddsAsWellAsItsOwnPasses) {
+  const Workbench bench;
+  Request request = bench.request({"none", "fxaa", "msaa4x"});
+  request.settings.reference_samples = 4;
+  Lab lab;
+  const auto extra = [&](const std::string& technique) {
+    const Ranking ranking = lab.rank(request);
+    const RankedTechnique& ranked = find(ranking, technique);
+    EXPECT_LT((*ranked.aa_interval_ms)[0], ranked.aa_ms);
+    EXPECT_GT((*ranked.aa_interval_ms)[1], ranked.aa_ms);
+    return *ranked.aa_interval_ms;
+  };
+  EXPECT_GT(extra("fxaa")[0], 0.0);
+  request.view.point_lights = 16;  // `none` takes longer, what FXAA does to it does not
+  const std::array<double, 2> lit = extra("fxaa");
+  request.view.point_lights = 0;
+  EXPECT_NEAR(lit[1] / lit[0], extra("fxaa")[1] / extra("fxaa")[0], 0.1 * lit[1] / lit[0]);
+  const Comparison comparison = lab.compare(request);
+  EXPECT_GT((*comparison.differences[0].time_change_interval)[0], 0.0) << comparison.differences[0].label;
+}
+
 TEST(Lab, RankKeepsTechniquesThatCannotRunWithTheReason) {
   const Workbench bench;
   Request request = bench.request({"agaa", "msaa4x"}, {"hd5870"});
@@ -302,6 +325,26 @@ TEST(Lab, ImageHasNoReference) {
   View view;
   view.scene = bench.path("image.png");
   EXPECT_THROW(Lab().reference(view, 4), InputError);
+}
+
+TEST(Lab, PlansEachViewUnderANameForItsFiles) {
+  const Workbench bench;
+  Lab lab;
+  const PointSettings views(parse_axes({"resolution=16x8,32x16", "scene.lights=simple,complex"}),
+                            Combine::grid);
+  const std::vector<NamedPlan> plans = lab.plan_views(bench.request(), views);
+  ASSERT_EQ(plans.size(), 4u);
+  EXPECT_EQ(plans[1].name, "resolution-16x8-scene.lights-complex");
+  EXPECT_EQ(plans[1].plan.view.resolution, (Resolution{16, 8}));
+  EXPECT_EQ(plans[2].name, "resolution-32x16-scene.lights-simple");
+  EXPECT_EQ(plans[2].plan.view.lights, "simple");
+  EXPECT_EQ(lab.plan_views(bench.request(), {}).front().name, "") << "a request that is not varied";
+  try {  // the mistakes of both views come together
+    lab.plan_views(bench.request(), {parse_axes({"scene.lights=dim,bright"}), Combine::grid});
+    ADD_FAILURE() << "no such lights";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.diagnostics().size(), 2u);
+  }
 }
 
 TEST(Lab, SweepOverAnImageRecordsTheSizeOfTheImage) {

@@ -72,6 +72,26 @@ TEST(Overall, TakesTheWorstVerdictTheLargestCostAndTheMeanError) {
   EXPECT_EQ(all[2].rankings, 0u) << "it runs nowhere";
 }
 
+TEST(Overall, TimesWithoutIntervalsAreOrderedByTheirErrorAmongThoseThatCostNothing) {
+  const auto all = overall({ranking_of({judged("none", "ok", 0.3, 0.0), judged("a", "unknown", 0.1, 0.5)}),
+                            ranking_of({judged("none", "ok", 0.3, 0.0), judged("a", "ok", 0.1, 0.4)})});
+  EXPECT_EQ(all[0].technique, "a");
+  EXPECT_EQ(all[0].verdict, "unknown");
+}
+
+TEST(Overall, ShowsTheErrorAsItsMetricPrintsIt) {
+  Ranking ranking = ranking_of({judged("a", "ok", -34.9494, 0.5)});
+  ranking.metric = "psnr";
+  ranking.edges = true;
+  ranking.techniques[0].edges = EdgeError{0.1, 34.9494};
+  const Table table = overall_table(overall({ranking, ranking}));
+  EXPECT_EQ(table.columns.back().title, "mean edge PSNR dB");
+  EXPECT_NE(to_csv(table).find(",34.9494"), std::string::npos) << to_csv(table);
+  EXPECT_NE(answer_of({ranking, ranking}).find("PSNR at edges 34.95 dB in the mean"), std::string::npos)
+      << answer_of({ranking, ranking});
+  EXPECT_NE(answer_of({ranking}).find("PSNR at edges 34.95 dB, "), std::string::npos);
+}
+
 TEST(EdgeError, CountsPixelsWhereTheReferenceHasEdgesAlone) {
   pipeline::Image reference(16, 4), image(16, 4), flip(16, 4);
   for (int y = 0; y < 4; ++y)
