@@ -183,9 +183,14 @@ Comparison Lab::compare(const Request& request, const std::vector<Variation>& va
     ResultSink sink;
     session_->run(numbers[i], sink, progress);
     const std::string label = i > 0 ? variations[i - 1].label : points == 1 ? "baseline" : "";
+    const std::size_t gpus = plans[i].gpus.size();  // points go by technique, then by GPU
+    const bool same_view = plans[i].view == plans.front().view;
+    std::size_t point = 0;
     for (Result& result : sink.take().results) {
       std::string name = label_of(result, label, points > 1);
-      labeled.push_back({std::move(name), std::move(result), i > 0 ? variations[i - 1].label : ""});
+      const std::size_t gpu = point++ % gpus;
+      labeled.push_back({std::move(name), std::move(result), i > 0 ? variations[i - 1].label : "",
+                         same_view ? time_direction(plans.front().gpus[gpu], plans[i].gpus[gpu]) : 0});
     }
   }
   return lab::compare(labeled, plans.front().calibration.get());

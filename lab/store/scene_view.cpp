@@ -178,6 +178,11 @@ std::optional<SceneSummary> remembered_summary(const std::string& path, const Ca
 
 }  // namespace
 
+std::string camera_name(const SceneSummary& scene, const std::string& camera) {
+  return scene.cameras.empty() ? std::string()
+                               : scene.cameras[static_cast<std::size_t>(find_camera(scene, camera))];
+}
+
 SceneView::SceneView(View plan, const Cache& cache, Observer& observer, SceneShelf* shelf)
     : plan_(std::move(plan)), cache_(cache), shelf_(shelf), free_camera_(free_camera(plan_.camera)) {
   if (is_image_file(plan_.scene)) {

@@ -25,6 +25,9 @@ struct SceneSummary {
   std::uint64_t triangles = 0;  ///< that a frame draws, were all of them in view
 };
 
+/// The name of a camera that is given by its name or index. Throws InputError U009 where the scene has none.
+std::string camera_name(const SceneSummary& scene, const std::string& camera);
+
 class SceneView {
  public:
   /// Finds the camera by name or index, or makes one of words (free_camera.h). `cache` and `shelf`, which is

@@ -82,6 +82,11 @@ Difference difference_of(const LabeledResult& before, const LabeledResult& after
       .dram_mb = {old.dram_mb, now.dram_mb},
       .shaded_samples = {static_cast<double>(old.shaded_samples), static_cast<double>(now.shaded_samples)}};
   if (calibration) difference.time_change_interval = time_change_interval(base, result, *calibration);
+  if (auto& interval = difference.time_change_interval; interval && base.technique == result.technique) {
+    // Half the DRAM makes no frame faster, however little is known of it.
+    if (after.direction > 0 && now.time_ms >= old.time_ms) (*interval)[0] = std::max(0.0, (*interval)[0]);
+    if (after.direction < 0 && now.time_ms <= old.time_ms) (*interval)[1] = std::min(0.0, (*interval)[1]);
+  }
   for (const std::string& name : pass_names(base, result))
     difference.passes.push_back(pass_difference(name, find_pass(base, name), find_pass(result, name)));
   return difference;

@@ -15,6 +15,8 @@ struct LabeledResult {
   std::string label{};  ///< "baseline", "msaa4x on gtx980 rops-x2", "runs/a"
   Result result{};
   std::string variation{};  ///< "rops-x2"; empty: as asked for
+  /// What the variation does to every time of the same frame: -1 never longer, 1 never shorter, 0 not known.
+  int direction = 0;
 };
 
 /// (new - old) / |old|; none where old is 0 and new is not.

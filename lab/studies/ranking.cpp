@@ -89,7 +89,7 @@ void RankingSink::begin(const RunContext& run) {
   for (const GpuConfig& gpu : run.plan.gpus)
     on_gpus_.push_back({{.scene = run.scene.name,
                          .gpu = gpu.id,
-                         .camera = run.plan.view.camera,
+                         .camera = camera_name(run.scene, run.plan.view.camera),
                          .resolution = run.plan.view.resolution,
                          .budget = question_.budget,
                          .metric = std::string(metric_name(question_.metric)),

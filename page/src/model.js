@@ -126,13 +126,33 @@ export class Model {
     return { ratio, low: ratio / factor, high: ratio * factor };
   }
 
+  // What the keys' documents say that a change of values does to every time: -1 never longer, 1 never shorter, 0 both
+  // ways; as time_direction of hwsim's lab/studies/variation.h.
+  #direction(before, after) {
+    const [was, is] = [before, after].map(({ gpu, sets }) => ({ ...this.data.gpus[gpu].values, ...sets }));
+    const signs = new Set();
+    for (const { name, direction } of this.data.keys) {
+      const change = Number(is[name]) - Number(was[name]);
+      if (change === 0 || Number.isNaN(change)) continue;
+      if (direction === "neither") return 0;
+      signs.add((direction === "faster") === change > 0 ? -1 : 1);
+    }
+    return signs.size === 1 ? [...signs][0] : 0;
+  }
+
   // The change of each pass, and of the frame last.
   changes(point, before, after) {
     const sides = [before, after].map((side) => this.frame(point, side.gpu, side.sets));
     const support = SUPPORTS[Math.max(...sides.map((frame) => SUPPORTS.indexOf(frame.support)))];
     const sameGpu = this.data.gpus[before.gpu].id === this.data.gpus[after.gpu].id;
     const gradients = support === "uncalibrated" ? [[], []] : [before, after].map((side) => this.#passGradients(point, side));
-    const one = ([a, b]) => this.#ratio(a, b, sameGpu, support);
+    const direction = sameGpu ? this.#direction(before, after) : 0;
+    const one = ([a, b]) => {
+      const change = this.#ratio(a, b, sameGpu, support);
+      if (direction > 0 && change?.low < 1 && change.ratio >= 1) change.low = 1;
+      if (direction < 0 && change?.high > 1 && change.ratio <= 1) change.high = 1;
+      return change;
+    };
     const changes = sides[1].passes.map((_, p) => one(sides.map(({ passes }, s) => ({ ...passes[p], gradient: gradients[s][p] }))));
     changes.push(one(sides.map((frame) => ({ ...frame, stackNs: stackOf(frame) }))));
     return changes;

@@ -192,6 +192,18 @@ TEST(Lab, RankAndCompareKnowWhatAFilterAddsAsWellAsItsOwnPasses) {
   EXPECT_GT((*comparison.differences[0].time_change_interval)[0], 0.0) << comparison.differences[0].label;
 }
 
+TEST(Lab, CompareKnowsOnWhichSideOfNothingAChangeOfHardwareLies) {
+  const Workbench bench;
+  Lab lab;
+  const auto ends = [&](const std::string& path, const std::string& value) {
+    const Comparison comparison = lab.compare(bench.request(), {{"changed", {}, {{path, value}}}});
+    return *comparison.differences.at(0).time_change_interval;
+  };
+  EXPECT_GE(ends("gpu.dram_bandwidth_gb_s", "x0.5")[0], 0.0);
+  EXPECT_GT(ends("gpu.dram_bandwidth_gb_s", "x0.5")[1], 0.0);
+  EXPECT_LE(ends("gpu.l2_size_kib", "x4")[1], 0.0);
+}
+
 TEST(Lab, RankKeepsTechniquesThatCannotRunWithTheReason) {
   const Workbench bench;
   Request request = bench.request({"agaa", "msaa4x"}, {"hd5870"});
