@@ -188,9 +188,8 @@ Comparison Lab::compare(const Request& request, const std::vector<Variation>& va
     std::size_t point = 0;
     for (Result& result : sink.take().results) {
       std::string name = label_of(result, label, points > 1);
-      const std::size_t gpu = point++ % gpus;
       labeled.push_back({std::move(name), std::move(result), i > 0 ? variations[i - 1].label : "",
-                         same_view ? time_direction(plans.front().gpus[gpu], plans[i].gpus[gpu]) : 0});
+                         plans[i].gpus[point++ % gpus], same_view ? 0 : i});
     }
   }
   return lab::compare(labeled, plans.front().calibration.get());

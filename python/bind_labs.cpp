@@ -152,23 +152,27 @@ py::dict compare(Workshop& shop, const py::dict& words, const std::vector<std::s
       [&](lab::Lab& lab) { return lab.compare(request, lab::variations_of({.what_ifs = what_ifs})); }));
 }
 
-/// Results as to_json() writes them, with their labels and variations: what is laid over their GPUs.
-py::dict compare_results(Workshop& shop,
-                         const std::vector<std::tuple<std::string, std::string, std::string>>& results) {
-  std::vector<lab::LabeledResult> labeled;
-  for (const auto& [label, variation, text] : results)
-    labeled.push_back({label, lab::result_from_json(Json::parse(text)), variation});
-  return tables_of(shop.ask([&](lab::Lab& lab) { return lab::compare(labeled, lab.calibration()); }));
+/// A result as to_json() writes it, with its label, its variation (what is laid over its GPU), that GPU, and
+/// a number that results of one frame share.
+using TimedWords = std::tuple<std::string, std::string, std::string, const Gpu*, std::size_t>;
+
+lab::LabeledResult labeled(const TimedWords& words) {
+  const auto& [label, variation, text, gpu, view] = words;
+  return {label, lab::result_from_json(Json::parse(text)), variation, gpu->config, view};
+}
+
+py::dict compare_results(Workshop& shop, const std::vector<TimedWords>& results) {
+  std::vector<lab::LabeledResult> all;
+  for (const TimedWords& words : results) all.push_back(labeled(words));
+  return tables_of(shop.ask([&](lab::Lab& lab) { return lab::compare(all, lab.calibration()); }));
 }
 
 /// The 90 % interval of (after - before) / before; none without a calibration.
-std::optional<std::array<double, 2>> change_interval(Workshop& shop, const std::string& before,
-                                                     const std::string& after) {
-  const lab::Result base = lab::result_from_json(Json::parse(before));
-  const lab::Result result = lab::result_from_json(Json::parse(after));
-  return shop.ask([&](lab::Lab& lab) -> std::optional<std::array<double, 2>> {
-    const cost_models::Calibration* const calibration = lab.calibration();
-    return calibration ? lab::time_change_interval(base, result, *calibration) : std::nullopt;
+std::optional<std::array<double, 2>> change_interval(Workshop& shop, const TimedWords& before,
+                                                     const TimedWords& after) {
+  const std::vector<lab::LabeledResult> both = {labeled(before), labeled(after)};
+  return shop.ask([&](lab::Lab& lab) {
+    return lab::compare(both, lab.calibration()).differences.front().time_change_interval;
   });
 }
 

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
+#include <variant>
 
 #include "hwsim/base/units_of_measure.h"
+#include "hwsim/gpu/gpu_keys.h"
 
 namespace hwsim::lab {
 namespace {
@@ -81,12 +84,11 @@ Difference difference_of(const LabeledResult& before, const LabeledResult& after
       .memory_mib = {old.memory_mib, now.memory_mib},
       .dram_mb = {old.dram_mb, now.dram_mb},
       .shaded_samples = {static_cast<double>(old.shaded_samples), static_cast<double>(now.shaded_samples)}};
-  if (calibration) difference.time_change_interval = time_change_interval(base, result, *calibration);
-  if (auto& interval = difference.time_change_interval; interval && base.technique == result.technique) {
-    // Half the DRAM makes no frame faster, however little is known of it.
-    if (after.direction > 0 && now.time_ms >= old.time_ms) (*interval)[0] = std::max(0.0, (*interval)[0]);
-    if (after.direction < 0 && now.time_ms <= old.time_ms) (*interval)[1] = std::min(0.0, (*interval)[1]);
-  }
+  const bool same_frame =
+      before.gpu && after.gpu && before.view == after.view && base.technique == result.technique;
+  if (calibration)
+    difference.time_change_interval = time_change_interval(
+        base, result, *calibration, same_frame ? time_direction(*before.gpu, *after.gpu) : 0);
   for (const std::string& name : pass_names(base, result))
     difference.passes.push_back(pass_difference(name, find_pass(base, name), find_pass(result, name)));
   return difference;
@@ -218,15 +220,45 @@ std::optional<double> ratio_log_width(const Result& before, const Result& after,
   return half ? std::optional(std::log(*half)) : std::nullopt;
 }
 
+int time_direction(const GpuConfig& before, const GpuConfig& after) {
+  if (functional_hash(before) != functional_hash(after)) return 0;
+  GpuConfig old = before, now = after;
+  const std::vector<Key> was = keys_of(static_cast<GpuValues<double>&>(old));
+  const std::vector<Key> is = keys_of(static_cast<GpuValues<double>&>(now));
+  bool longer = false, shorter = false;
+  for (std::size_t i = 0; i < was.size(); ++i) {
+    const auto number = [](const Key& key) {
+      return std::visit(
+          [](const auto* value) {
+            if constexpr (std::is_arithmetic_v<std::remove_reference_t<decltype(*value)>>)
+              return static_cast<double>(*value);
+            return 0.0;
+          },
+          key.slot);
+    };
+    const double change = number(is[i]) - number(was[i]);
+    if (change == 0.0) continue;
+    const bool faster = was[i].info.has(kFaster), slower = was[i].info.has(kSlower);
+    if (!faster && !slower) return 0;
+    (faster == (change > 0.0) ? shorter : longer) = true;
+  }
+  return longer == shorter ? 0 : longer ? 1 : -1;
+}
+
 std::optional<std::array<double, 2>> time_change_interval(const Result& before, const Result& after,
-                                                          const cost_models::Calibration& calibration) {
+                                                          const cost_models::Calibration& calibration,
+                                                          int direction) {
   const std::optional<double> width = ratio_log_width(before, after, calibration);
   if (!width || before.frame.time_ms <= 0.0) return std::nullopt;
   const double shared_ms = before.technique == after.technique ? 0.0 : shared_time_ms(before, after);
   const auto end = [&](double factor) {
     return (shared_ms + (after.frame.time_ms - shared_ms) * factor) / before.frame.time_ms - 1.0;
   };
-  return std::array{end(std::exp(-*width)), end(std::exp(*width))};
+  std::array ends{end(std::exp(-*width)), end(std::exp(*width))};
+  // Half the DRAM makes no frame faster, however little is known of it.
+  if (direction > 0 && end(1.0) >= 0.0) ends[0] = std::max(0.0, ends[0]);
+  if (direction < 0 && end(1.0) <= 0.0) ends[1] = std::min(0.0, ends[1]);
+  return ends;
 }
 
 Comparison compare(const std::vector<LabeledResult>& results, const cost_models::Calibration* calibration) {

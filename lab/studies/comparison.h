@@ -14,10 +14,14 @@ namespace hwsim::lab {
 struct LabeledResult {
   std::string label{};  ///< "baseline", "msaa4x on gtx980 rops-x2", "runs/a"
   Result result{};
-  std::string variation{};  ///< "rops-x2"; empty: as asked for
-  /// What the variation does to every time of the same frame: -1 never longer, 1 never shorter, 0 not known.
-  int direction = 0;
+  std::string variation{};         ///< "rops-x2"; empty: as asked for
+  std::optional<GpuConfig> gpu{};  ///< that timed it; none: read from a folder
+  std::size_t view = 0;            ///< results of one technique with the same number are of one frame
 };
+
+/// What the documents of the keys say that a change of a GPU's numbers does to every time: -1 never longer, 1
+/// never shorter, 0 both ways, or it changes the work.
+int time_direction(const GpuConfig& before, const GpuConfig& after);
 
 /// (new - old) / |old|; none where old is 0 and new is not.
 std::optional<double> relative_change(double before, double after);
@@ -66,9 +70,11 @@ std::optional<double> ratio_log_width(const Result& before, const Result& after,
                                       const cost_models::Calibration& calibration);
 
 /// 90 % interval of the relative change of the time from one result to another; none without intervals of
-/// both. Of two techniques, what passes take that both have alike is as wrong in both.
+/// both. Of two techniques, what passes take that both have alike is as wrong in both. Of one frame on
+/// changed hardware, `direction` says on which side of nothing the change lies (time_direction).
 std::optional<std::array<double, 2>> time_change_interval(const Result& before, const Result& after,
-                                                          const cost_models::Calibration& calibration);
+                                                          const cost_models::Calibration& calibration,
+                                                          int direction = 0);
 
 nlohmann::ordered_json to_json(const Comparison& comparison);
 /// Throws nlohmann::json::exception where a field is missing or of another type.

@@ -2,10 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <type_traits>
-#include <variant>
-
-#include "hwsim/gpu/gpu_keys.h"
 #include "lab/base/text.h"
 
 namespace hwsim::lab {
@@ -43,31 +39,6 @@ std::vector<RunPlan> plans_of(const Request& base, const std::vector<Variation>&
     plans.push_back(make_plan(varied(base, variation, problems), files, problems));
   if (!problems.empty()) throw InputError(problems);
   return plans;
-}
-
-int time_direction(const GpuConfig& before, const GpuConfig& after) {
-  if (functional_hash(before) != functional_hash(after)) return 0;
-  GpuConfig old = before, now = after;
-  const std::vector<Key> was = keys_of(static_cast<GpuValues<double>&>(old));
-  const std::vector<Key> is = keys_of(static_cast<GpuValues<double>&>(now));
-  bool longer = false, shorter = false;
-  for (std::size_t i = 0; i < was.size(); ++i) {
-    const auto number = [](const Key& key) {
-      return std::visit(
-          [](const auto* value) {
-            if constexpr (std::is_arithmetic_v<std::remove_reference_t<decltype(*value)>>)
-              return static_cast<double>(*value);
-            return 0.0;
-          },
-          key.slot);
-    };
-    const double change = number(is[i]) - number(was[i]);
-    if (change == 0.0) continue;
-    const bool faster = was[i].info.has(kFaster), slower = was[i].info.has(kSlower);
-    if (!faster && !slower) return 0;
-    (faster == (change > 0.0) ? shorter : longer) = true;
-  }
-  return longer == shorter ? 0 : longer ? 1 : -1;
 }
 
 }  // namespace hwsim::lab

@@ -27,10 +27,6 @@ std::vector<Variation> variations_of(const Trials& trials);
 /// The request with a variation. Appends what is wrong with the settings to `problems`.
 Request varied(const Request& base, const Variation& variation, std::vector<Diagnostic>& problems);
 
-/// What the documents of the keys say that a change of a GPU's numbers does to every time: -1 never longer, 1
-/// never shorter, 0 both ways, or it changes the work.
-int time_direction(const GpuConfig& before, const GpuConfig& after);
-
 /// The plan of the request, then one for each variation. Throws InputError with the problems of all; those of
 /// the request alone when it has some, since each variation would repeat them.
 std::vector<RunPlan> plans_of(const Request& base, const std::vector<Variation>& variations,

@@ -45,6 +45,7 @@ class Frame:
     def __init__(self, core: _core.Frame, gpu: Gpu, lab: Lab) -> None:
         self._core = core
         self._drawn = [core]
+        self._works: dict[int, object] = {}
         self._lab = lab
         self._facts = core.facts()
         self.gpu = gpu  #: the GPU that it was emulated for
@@ -158,13 +159,18 @@ class Frame:
         self._drawn.append(self._lab._core.frame_for(self._core, gpu._core))
         return self._drawn[-1]
 
+    def _work_of(self, core: _core.Frame) -> object:
+        """What stands for one of the drawn frames in timings, which must not keep its images."""
+        return self._works.setdefault(id(core), object())
+
     def _gpu(self, gpu: Gpu | str | None) -> Gpu:
         return self.gpu if gpu is None else self._lab.gpu(gpu)
 
     def time(self, gpu: Gpu | str | None = None) -> Timing:
         """The time on a GPU; without one, on the GPU that the frame was emulated for. Raises InputError."""
         on = self._gpu(gpu)
-        return Timing(self._for(on).time(on._core), on)
+        core = self._for(on)
+        return Timing(core.time(on._core), on, self._work_of(core))
 
     def times(self, gpus: Iterable[Gpu | str]) -> list[Timing]:
         """The time on each GPU."""
@@ -178,7 +184,8 @@ class Frame:
     def explain(self, gpu: Gpu | str | None = None) -> Explanation:
         """Why the frame takes its time: stacks, headroom by unit, sensitivities with doubled values."""
         on = self._gpu(gpu)
-        return Explanation(self._for(on).explain(on._core), on)
+        core = self._for(on)
+        return Explanation(core.explain(on._core), on, self._work_of(core))
 
     def sweep(self, vary: Mapping[str, Sequence[Value]], gpu: Gpu | str | None = None) -> Sweep:
         """The times over a grid of a GPU's keys, in the lab's threads: below half a millisecond a point.

@@ -32,9 +32,10 @@ class PassTiming:
 class Timing:
     """A frame's time on one GPU: :meth:`hwsim.Frame.time` gives it."""
 
-    def __init__(self, data: Mapping[str, Any], gpu: Gpu) -> None:
+    def __init__(self, data: Mapping[str, Any], gpu: Gpu, work: object) -> None:
         self._data = data
         self._gpu = gpu
+        self._work = work  # stands for the counted frame: timings with one differ in hardware alone
 
     @property
     def time_ms(self) -> float:
@@ -141,6 +142,18 @@ class Ratio:
         return f"{self.value:.3f}{between}"
 
 
+def _timed_words(timings: Mapping[str, Timing]) -> list[tuple[str, str, str, Any, int]]:
+    """What the core is told of each: label, what is laid over its GPU, its result, its GPU, and a number of its frame."""
+    works: list[object] = []
+    words = []
+    for label, t in timings.items():
+        if not any(work is t._work for work in works):
+            works.append(t._work)
+        view = next(i for i, work in enumerate(works) if work is t._work)
+        words.append((label, t._gpu.variation, json.dumps(t._data), t._gpu._core, view))
+    return words
+
+
 def ratio(timing: Timing, base: Timing) -> Ratio:
     """``timing.time_ms / base.time_ms``, with its 90 % interval.
 
@@ -148,7 +161,8 @@ def ratio(timing: Timing, base: Timing) -> Ratio:
     the base takes no time.
     """
     value = timing.time_ms / base.time_ms
-    change = timing._gpu._lab._core.change_interval(json.dumps(base._data), json.dumps(timing._data))
+    words = _timed_words({"before": base, "after": timing})
+    change = timing._gpu._lab._core.change_interval(*words)
     return Ratio(value, None if change is None else (1 + change[0], 1 + change[1]))
 
 
@@ -200,9 +214,9 @@ class Gradient(Mapping[str, float]):
 class Explanation:
     """Why a frame takes its time: :meth:`hwsim.Frame.explain` gives it."""
 
-    def __init__(self, data: Mapping[str, Any], gpu: Gpu) -> None:
+    def __init__(self, data: Mapping[str, Any], gpu: Gpu, work: object) -> None:
         self._data = data
-        self.timing = Timing(data, gpu)  #: the time that is explained
+        self.timing = Timing(data, gpu, work)  #: the time that is explained
 
     @property
     def headroom(self) -> Table:
@@ -278,6 +292,5 @@ def compare_timings(timings: Mapping[str, Timing]) -> Comparison:
     """
     if not timings:
         raise ValueError("there is nothing to compare")
-    words = [(label, t._gpu.variation, json.dumps(t._data)) for label, t in timings.items()]
     lab = next(iter(timings.values()))._gpu._lab
-    return Comparison(lab._core.compare_results(words))
+    return Comparison(lab._core.compare_results(_timed_words(timings)))

@@ -151,5 +151,22 @@ TEST(Comparison, PassesThatStayAreLeftOutUnlessAskedFor) {
   EXPECT_EQ(pass_comparison(comparison, true).rows.size(), 2u);
 }
 
+TEST(TimeDirection, IsThatOfAllKeysThatChange) {
+  GpuConfig gpu;
+  gpu.dram_bandwidth_gb_s = 100.0;
+  const auto direction = [&](const auto& change) {
+    GpuConfig changed = gpu;
+    change(changed);
+    return time_direction(gpu, changed);
+  };
+  EXPECT_EQ(direction([](GpuConfig&) {}), 0);
+  EXPECT_EQ(direction([](GpuConfig& g) { g.dram_bandwidth_gb_s *= 2; }), -1);
+  EXPECT_EQ(direction([](GpuConfig& g) { g.dram_bandwidth_gb_s *= 0.5; }), 1);
+  EXPECT_EQ(direction([](GpuConfig& g) { g.pass_overhead_us += 1; }), 1) << "a larger value is slower";
+  EXPECT_EQ(direction([](GpuConfig& g) { g.dram_bandwidth_gb_s *= 2, g.pass_overhead_us += 1; }), 0);
+  EXPECT_EQ(direction([](GpuConfig& g) { g.features.native_msaa_max *= 2, g.dram_bandwidth_gb_s *= 2; }), 0)
+      << "another frame is drawn";
+}
+
 }  // namespace
 }  // namespace hwsim::lab
