@@ -29,7 +29,7 @@
 namespace hwsim::lab {
 
 struct NamedPlan {
-  std::string name;  ///< of its files; empty for a request that is not varied
+  std::string name;  ///< how its files are called; empty for a request that is not varied
   RunPlan plan;
 };
 

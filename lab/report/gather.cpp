@@ -181,7 +181,7 @@ class ReportSink : public RunSink {
   View view_;
   int samples_ = 0;
   std::vector<ShownImage> images_;
-  std::vector<ViewParts> view_parts_;  ///< of each point
+  std::vector<ViewParts> view_parts_;  ///< one entry a point
 };
 
 void require_size(std::size_t points) {

@@ -69,7 +69,7 @@ void offer_what_ifs(Report& report, const ConfigFolder& folder) {
 
 namespace {
 
-/// Of all points with one support, whose names are the same words.
+/// What the support of some points means; `names` lists them.
 std::string support_limit(const std::string& support, const std::string& names) {
   if (support == "extrapolated")
     return names + ": extrapolated. No published time of these techniques, or of such a GPU, was fitted.";

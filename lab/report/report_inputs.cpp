@@ -83,7 +83,7 @@ void order_as_asked(std::vector<Request>& requests, const fs::path& manifest) {
   });
 }
 
-/// Of one run, of several side by side, or of several in each view of a ranking.
+/// The files of one run, of several side by side, or of several in each view of a ranking.
 std::vector<fs::path> run_files(const fs::path& folder) {
   std::vector<fs::path> files;
   if (is_there(folder / "run.toml")) files.push_back(folder / "run.toml");

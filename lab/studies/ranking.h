@@ -139,8 +139,8 @@ Table ranking_table(const Ranking& ranking);
 Table joined_table(const std::vector<Ranking>& rankings);
 Table overall_table(const std::vector<OverallTechnique>& techniques);
 nlohmann::ordered_json to_json(const std::vector<Ranking>& rankings);
-/// Of one ranking or of several. Throws nlohmann::json::exception where a field is missing or of another
-/// type.
+/// What to_json() made of one ranking or of several. Throws nlohmann::json::exception where a field is
+/// missing or of another type.
 std::vector<Ranking> rankings_from_json(const nlohmann::ordered_json& json);
 
 /// Which technique, in a sentence; there must be a ranking, and each must have a technique.

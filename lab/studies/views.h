@@ -10,7 +10,7 @@
 namespace hwsim::lab {
 
 struct NamedView {
-  std::string name;  ///< of its files: "scene-wires-camera-2"; empty for the request as it is
+  std::string name;  ///< how its files are called: "scene-wires-camera-2"; empty for the request as it is
   Request request;
 };
 

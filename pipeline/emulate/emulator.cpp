@@ -231,12 +231,8 @@ class FrameRunner {
       c.centroid = {c.coverage_positions, {}};
       c.positions = c.coverage_positions.first(static_cast<std::size_t>(pass.samples));
     }
-    const auto [left, right] =
-        std::minmax_element(c.coverage_positions.begin(), c.coverage_positions.end(),
-                            [](SamplePosition a, SamplePosition b) { return a.x < b.x; });
-    const auto [top, bottom] =
-        std::minmax_element(c.coverage_positions.begin(), c.coverage_positions.end(),
-                            [](SamplePosition a, SamplePosition b) { return a.y < b.y; });
+    const auto [left, right] = std::ranges::minmax_element(c.coverage_positions, {}, &SamplePosition::x);
+    const auto [top, bottom] = std::ranges::minmax_element(c.coverage_positions, {}, &SamplePosition::y);
     c.sample_min_x = left->x;
     c.sample_max_x = right->x;
     c.sample_min_y = top->y;

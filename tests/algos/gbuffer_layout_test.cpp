@@ -164,7 +164,8 @@ pipeline::Emulation of_32_samples(const std::string& technique, int native) {
   return pipeline::emulate(graph, request.features, FunctionalConfig{}, options);
 }
 
-// Four layers of eight samples have the picture of 32 native ones; vertices are shaded once. With stencil
+// Four layers of eight samples have the picture of 32 native ones, but for where a partly covered pixel takes its
+// attributes: at one sample of 32, or at one of each layer. Vertices are shaded once. With stencil
 // each layer is classified by itself, so that a simple pixel is lit once a layer; tiles see all samples.
 TEST(SimpleComplex, LayersOfEightSamplesAreNativeSamples) {
   const std::string reference = "deferred_simple_complex:z_scale=0,normal_dot_min=1,";
@@ -174,7 +175,7 @@ TEST(SimpleComplex, LayersOfEightSamplesAreNativeSamples) {
     double most = 0.0;
     for (std::size_t i = 0; i < native.color.pixels.size(); ++i)
       most = std::max(most, code_difference(native.color.pixels[i], layers.color.pixels[i]));
-    EXPECT_LE(most, 1.5) << technique;
+    EXPECT_LE(most, 2.5) << technique;
     const PassCounters a = total(native.trace), b = total(layers.trace);
     // The layers are averaged by one more triangle.
     EXPECT_LE(b.stats.vertex_shader_invocations, a.stats.vertex_shader_invocations + 3) << technique;
