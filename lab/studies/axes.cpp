@@ -157,6 +157,8 @@ int parse_sample(const std::string& text) {
 PointSettings::PointSettings(std::vector<Axis> axes, Combine how)
     : axes_(std::move(axes)), how_(how), count_(1) {
   for (const Axis& axis : axes_) {
+    if (axis.values.empty() && !axis.range)
+      fail_usage("U019", "`" + axis.path + "` has no values: the list is empty", "", "one value at least");
     if (axis.values.empty())
       fail_usage("U019", "the range of `" + axis.path + "` has no count", "lo..hi:n, or --sample lhs:N");
     count_ = how == Combine::grid ? count_ * axis.values.size() : axis.values.size();
