@@ -2,7 +2,10 @@
 
 #include <pybind11/stl.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
 
 #include "hwsim/config/assign.h"
 
@@ -30,6 +33,51 @@ std::string_view severity_name(Severity severity) {
   return "error";
 }
 
+py::type_error wrong_type(const std::string& key, const py::handle& value) {
+  return py::type_error("`" + key + "` must be bool, int, float or str, not " +
+                        Py_TYPE(value.ptr())->tp_name);
+}
+
+/// Which Python takes for a number; "numpy.bool" from NumPy 2 on.
+bool is_numpy_bool(const py::handle& value) {
+  const std::string_view name = Py_TYPE(value.ptr())->tp_name;
+  return name == "numpy.bool_" || name == "numpy.bool";
+}
+
+/// NumPy makes a real number of any array that holds one value, and of a complex number: one with a dimension
+/// is a list, though, and the other two numbers.
+bool is_several_numbers(const py::handle& value) {
+  if (py::hasattr(value, "ndim") && !py::object(value.attr("ndim")).equal(py::int_(0))) return true;
+  const py::object type = py::getattr(value, "dtype", py::none());
+  return py::object(py::getattr(type, "kind", py::none())).equal(py::str("c"));
+}
+
+/// What Python's protocol of numbers answered. None, and Python's error cleared, where it refused.
+std::optional<py::object> answered(PyObject* answer) {
+  if (answer != nullptr) return py::reinterpret_steal<py::object>(answer);
+  if (PyErr_ExceptionMatches(PyExc_Exception) == 0) throw py::error_already_set();  // Ctrl-C, SystemExit
+  PyErr_Clear();
+  return std::nullopt;
+}
+
+/// None for what is no whole number of 64 bits.
+std::optional<std::int64_t> whole_number(const py::handle& value) {
+  if (PyIndex_Check(value.ptr()) == 0) return std::nullopt;
+  const auto whole = answered(PyNumber_Index(value.ptr()));
+  if (!whole) return std::nullopt;
+  int overflow = 0;
+  const long long number = PyLong_AsLongLongAndOverflow(whole->ptr(), &overflow);
+  return overflow == 0 ? std::optional(std::int64_t{number}) : std::nullopt;
+}
+
+/// None for what is no real number. A whole number beyond the reals is infinite: out of every key's range.
+std::optional<double> real_number(const py::handle& value) {
+  if (PyNumber_Check(value.ptr()) == 0) return std::nullopt;
+  if (const auto real = answered(PyNumber_Float(value.ptr()))) return PyFloat_AsDouble(real->ptr());
+  if (PyLong_Check(value.ptr()) != 0) return std::numeric_limits<double>::infinity();
+  return std::nullopt;
+}
+
 /// Gives each named value to its field.
 void fill(const std::vector<lab::Field>& fields, const py::dict& values, std::vector<Diagnostic>& problems) {
   std::vector<Key> keys;
@@ -38,7 +86,7 @@ void fill(const std::vector<lab::Field>& fields, const py::dict& values, std::ve
     const std::string key_name = py::cast<std::string>(name);
     const Key* const key = find_key(keys, key_name);
     if (key)
-      assign(*key, to_toml_value(value), {.file = key_name, .line_text = {}}, problems);
+      assign(*key, to_toml_value(key_name, value), {.file = key_name, .line_text = {}}, problems);
     else
       problems.push_back(unknown_key(keys, key_name, "a request", {.file = key_name, .line_text = {}}));
   }
@@ -110,21 +158,21 @@ py::list to_python(const std::vector<Diagnostic>& diagnostics) {
   return list;
 }
 
-TomlValue to_toml_value(const py::handle& value) {
+TomlValue to_toml_value(const std::string& key, const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
+  if (is_numpy_bool(value)) return PyObject_IsTrue(value.ptr()) == 1;
   if (py::isinstance<py::str>(value)) return value.cast<std::string>();
-  if (PyIndex_Check(value.ptr()) != 0)
-    return py::reinterpret_steal<py::int_>(PyNumber_Index(value.ptr())).cast<std::int64_t>();
-  if (PyNumber_Check(value.ptr()) != 0) return value.cast<double>();
-  throw py::type_error("a value must be bool, int, float or str, not " +
-                       std::string(Py_TYPE(value.ptr())->tp_name));
+  if (is_several_numbers(value)) throw wrong_type(key, value);
+  if (const auto whole = whole_number(value)) return *whole;
+  if (const auto real = real_number(value)) return *real;
+  throw wrong_type(key, value);
 }
 
 std::vector<Assignment> to_assignments(const py::handle& pairs) {
   std::vector<Assignment> sets;
   for (const py::handle& pair : pairs) {
     const auto [path, value] = pair.cast<std::pair<std::string, py::object>>();
-    const TomlValue toml = to_toml_value(value);
+    const TomlValue toml = to_toml_value(path, value);
     const auto* const text = std::get_if<std::string>(&toml);  // as on a command line: x2, none, "1.5"
     sets.push_back({path, text ? *text : to_toml(toml)});
   }

@@ -23,8 +23,8 @@ py::dict to_python(const lab::Table& table);
 /// What Diagnostic of hwsim/_errors.py takes.
 py::list to_python(const std::vector<Diagnostic>& diagnostics);
 
-/// A bool, int, float or str. Throws TypeError for anything else.
-TomlValue to_toml_value(const py::handle& value);
+/// A bool, int, float or str, those of NumPy too. Throws TypeError that names the key for anything else.
+TomlValue to_toml_value(const std::string& key, const py::handle& value);
 
 /// A sequence of (path, value), where a value is what to_toml_value takes.
 std::vector<Assignment> to_assignments(const py::handle& pairs);

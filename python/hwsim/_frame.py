@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._checks import settings_of, values_of
 from ._gpu import Gpu, Value
 from ._sweep import Sweep
 from ._tables import Table
@@ -77,8 +78,11 @@ class Frame:
     def flip_map(self) -> npt.NDArray[np.float32] | None:
         """The FLIP error of each pixel, 0 to 1: float32, (height, width). Read-only, no copy.
 
-        None unless the frame was emulated with ``reference_samples``.
+        None unless the frame was emulated with ``reference_samples``. Raises ValueError without pictures
+        (``images=False``), as the others do.
         """
+        if self._core.image is None:
+            self._picture(None)
         picture: npt.NDArray[np.float32] | None = self._core.flip_map
         return picture
 
@@ -196,8 +200,9 @@ class Frame:
         that are no GPU, and for keys of features and limits, which :meth:`hwsim.Lab.sweep` takes.
         """
         on = self._gpu(gpu)
-        axes = [(f"gpu.{key}", list(values)) for key, values in vary.items()]
-        return Sweep(vary, self._lab._core.time_variants(self._for(on), on._core, axes))
+        given = {key: values_of(key, values) for key, values in settings_of("vary", vary).items()}
+        axes = [(f"gpu.{key}", values) for key, values in given.items()]
+        return Sweep(given, self._lab._core.time_variants(self._for(on), on._core, axes))
 
     # Shown
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Iterator, Mapping, Union
 
 from . import _core
+from ._checks import factor_of, settings_of, text_of
 from ._tables import Table
 
 if TYPE_CHECKING:
@@ -116,21 +117,22 @@ class Gpu(Mapping[str, Value]):
         Keys with a dot go into the mapping: ``gpu.but({"features.native_msaa_max": 4})``. Raises InputError for
         keys, types and ranges that are none, and for values that contradict each other.
         """
-        sets = {**(settings or {}), **keys}
+        sets = {**settings_of("settings", settings), **keys}
         more = [(f"gpu.{key}", value) for key, value in sets.items()]
         return self._made(self._core.overlays, [*self._core.sets, *more])
 
     def scaled(self, factors: Mapping[str, float] | None = None, /, **keys: float) -> Gpu:
         """The same GPU with values times factors: ``gpu.scaled(dram_bandwidth_gb_s=2)``. Raises InputError."""
-        both = {**(factors or {}), **keys}
-        return self.but({key: f"x{factor!r}" for key, factor in both.items()})
+        both = {**settings_of("factors", factors), **keys}
+        return self.but({key: f"x{factor_of(key, factor)!r}" for key, factor in both.items()})
 
     def over(self, *overlays: str) -> Gpu:
         """The same GPU below overlays: names of :func:`hwsim.overlays`, or files that end in .toml.
 
         Settings of :meth:`but` still act last. Raises InputError.
         """
-        return self._made([*self._core.overlays, *overlays], self._core.sets)
+        names = [text_of("overlay", overlay) for overlay in overlays]
+        return self._made([*self._core.overlays, *names], self._core.sets)
 
     def _made(self, overlays: list[str], sets: list[tuple[str, Value]]) -> Gpu:
         core = self._lab._core.gpu(self._core.name, overlays, sets, self._core.calibrated)

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._checks import settings_of, text_of, texts_of, values_of
 from ._errors import Diagnostic
 from ._frame import Frame
 from ._gpu import Gpu, Value
@@ -97,10 +98,6 @@ def _installed_configs() -> str | None:
     return None
 
 
-def _listed(one_or_more: str | Sequence[str]) -> list[str]:
-    return [one_or_more] if isinstance(one_or_more, str) else list(one_or_more)
-
-
 def _free_place(file: FileLike, force: bool) -> Path:
     place = Path(file)
     if place.exists() and not force:
@@ -180,7 +177,7 @@ class Lab:
         """
         if isinstance(gpu, Gpu):
             return gpu
-        return Gpu(self._core.gpu(gpu, [], [], calibrated), self)
+        return Gpu(self._core.gpu(text_of("gpu", gpu), [], [], calibrated), self)
 
     def scene(self, scene: SceneLike) -> Scene:
         """Name, cameras and the loader's notes of a scene. Raises InputError."""
@@ -222,7 +219,7 @@ class Lab:
         view = view_of(scene, {"resolution": resolution, "camera": camera})
         how = {"reference_samples": reference_samples, "images": images, "engine": engine}
         on = self.gpu(gpu)
-        words = self._words(view, [technique], how, settings)
+        words = self._words(view, [text_of("technique", technique)], how, settings)
         return Frame(self._core.emulate(words, on._core), on, self)
 
     def reference(self, scene: SceneLike, samples: int = 64) -> npt.NDArray[np.float32]:
@@ -248,8 +245,8 @@ class Lab:
         """
         view = view_of(scene, {"resolution": resolution, "camera": camera})
         how = {"reference_samples": reference_samples, "images": False}
-        words = self._words(view, _listed(techniques), how, settings)
-        return Ranking(self._core.rank(words, self.gpu(gpu)._core, budget))
+        words = self._words(view, texts_of("techniques", techniques), how, settings)
+        return Ranking(self._core.rank(words, self.gpu(gpu)._core, text_of("budget", budget)))
 
     def compare(
         self,
@@ -269,8 +266,8 @@ class Lab:
         :param what_if: names of :meth:`overlays`, each tried alone; "a+b" lays both
         """
         view = view_of(scene, {"resolution": resolution, "camera": camera})
-        words = self._words(view, _listed(techniques), {"images": False}, settings)
-        return Comparison(self._core.compare(words, _listed(gpus), _listed(what_if)))
+        words = self._words(view, texts_of("techniques", techniques), {"images": False}, settings)
+        return Comparison(self._core.compare(words, texts_of("gpus", gpus), texts_of("what_if", what_if)))
 
     def sweep(
         self,
@@ -287,7 +284,7 @@ class Lab:
         values as ``--set`` takes them ("x2" for twice a number of the GPU), and the fields of a View, such as
         "resolution" and "camera". All points are checked before the first one is drawn, and each frame is drawn once.
         """
-        grid = _Grid(self, view_of(scene, {}), _listed(techniques), gpus, vary or {}, engine)
+        grid = _Grid(self, view_of(scene, {}), texts_of("techniques", techniques), gpus, settings_of("vary", vary), engine)
         return grid.run()
 
     def report(
@@ -314,9 +311,9 @@ class Lab:
         """
         place = _free_place(file, force)
         view = view_of(scene, {"resolution": resolution, "camera": camera})
-        words = self._words(view, _listed(techniques), {"reference_samples": reference_samples}, settings)
+        words = self._words(view, texts_of("techniques", techniques), {"reference_samples": reference_samples}, settings)
         again = f"hwsim.report({str(file)!r}, {view!r}, {techniques!r}, {gpus!r}, what_if={what_if!r})"
-        self._core.report(words, _listed(gpus), _listed(what_if), str(place), again)
+        self._core.report(words, texts_of("gpus", gpus), texts_of("what_if", what_if), str(place), again)
         return place
 
     def report_of(
@@ -343,7 +340,7 @@ class Lab:
 
         :param papers: as their tables are called: "sbaa"; empty: all. Raises InputError
         """
-        return Validation(self._core.validate(_listed(papers)))
+        return Validation(self._core.validate(texts_of("papers", papers)))
 
     @staticmethod
     def _words(
@@ -356,7 +353,7 @@ class Lab:
             "view": view.words(),
             "settings": dict(how or {}),
             "techniques": list(techniques),
-            "sets": list((sets or {}).items()),
+            "sets": list(settings_of("settings", sets).items()),
         }
 
 
@@ -376,12 +373,12 @@ class _Grid:
         engine: str,
     ) -> None:
         self.lab, self.view, self.engine = lab, view, engine
-        given = [gpus] if isinstance(gpus, (str, Gpu)) else list(gpus)
+        given = [gpus] if isinstance(gpus, (str, Gpu)) else values_of("gpus", gpus)
         self.gpus = [lab.gpu(gpu) for gpu in given]
         self.coords: dict[str, list[Any]] = {
-            "technique": techniques,
+            "technique": values_of("techniques", techniques),
             "gpu": [gpu.label for gpu in self.gpus],
-            **{path: list(values) for path, values in vary.items()},
+            **{path: values_of(path, values) for path, values in vary.items()},
         }
         self.numbers = [path for path in vary if _is_number_of_gpu(path)]
         self.outer = [path for path in self.coords if path not in self.numbers]

@@ -6,6 +6,8 @@ import os
 from dataclasses import dataclass, fields, replace
 from typing import Any, Mapping, Union
 
+from ._checks import resolution_of
+
 __all__ = ["SceneLike", "View", "view_of"]
 
 
@@ -14,7 +16,7 @@ class View:
     """What is drawn, before any technique."""
 
     scene: str  #: a .gltf or .glb file, a generator with parameters ("grass:seed=3"), or an image
-    resolution: tuple[int, int] = (1280, 720)  #: (width, height) in pixels, each 1 to 16384
+    resolution: tuple[int, int] = (1280, 720)  #: (width, height) in pixels, each 1 to 16384; "1280x720" becomes it
     camera: str | int = 0  #: name or index of a camera of the scene, or "eye=1,2,3 target=0,0,0 fov=60"
     point_lights: int = 0  #: seeded lights that are added, 0 to 1024
     light_range: float = 0.15  #: reach of lights that are added, over the scene's diagonal
@@ -35,13 +37,22 @@ class View:
     exposure: float = 0.0  #: factor of the file's lights; 0: automatic
     memory_mib: int = 2048  #: memory that loading the scene may take
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "resolution", resolution_of(self.resolution))
+
     def words(self) -> dict[str, Any]:
         """By the names of ``run.toml``."""
         words = {f.name: getattr(self, f.name) for f in fields(self)}
         words["width_px"], words["height_px"] = words.pop("resolution")
         words["camera"] = str(self.camera)
-        words["scene"] = os.fspath(self.scene)
+        words["scene"] = _path(self.scene)
         return words
+
+
+def _path(scene: object) -> str:
+    if isinstance(scene, (str, bytes, os.PathLike)):
+        return os.fsdecode(scene)
+    raise TypeError(f"`scene` must be a text (str), a path or a View, not {type(scene).__name__}")
 
 
 SceneLike = Union[View, str, "os.PathLike[str]"]
@@ -49,5 +60,5 @@ SceneLike = Union[View, str, "os.PathLike[str]"]
 
 def view_of(scene: SceneLike, changes: Mapping[str, Any]) -> View:
     given = {name: value for name, value in changes.items() if value is not None}
-    view = scene if isinstance(scene, View) else View(os.fspath(scene))
+    view = scene if isinstance(scene, View) else View(_path(scene))
     return replace(view, **given)

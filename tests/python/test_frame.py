@@ -44,7 +44,13 @@ def test_a_frame_without_pictures_says_so(lab, triangle):
     frame = lab.emulate(triangle, resolution=(64, 44), images=False)
     with pytest.raises(ValueError, match="without pictures"):
         frame.image
-    assert frame._repr_png_() is None and frame.error is None and frame.flip_map is None
+    assert frame._repr_png_() is None and frame.error is None
+    compared = lab.emulate(triangle, resolution=(64, 44), images=False, reference_samples=1)
+    assert compared.error is not None
+    for without in (frame, compared):
+        with pytest.raises(ValueError, match="without pictures"):
+            without.flip_map
+    assert lab.emulate(triangle, resolution=(64, 44)).flip_map is None, "it was compared with nothing"
 
 
 def test_counters_are_those_of_the_passes(frame, lab):
