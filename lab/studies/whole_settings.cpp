@@ -36,7 +36,8 @@ bool is_whole_of_techniques(std::string_view name) {
 bool is_whole_of_view(std::string_view name) {
   View view;
   return std::ranges::any_of(fields_of(view), [&](const Field& field) {
-    return field.info.group == "scene" && field.info.key.name == name && std::holds_alternative<int*>(field.slot);
+    return field.info.group == "scene" && field.info.key.name == name &&
+           std::holds_alternative<int*>(field.slot);
   });
 }
 

@@ -164,9 +164,9 @@ pipeline::Emulation of_32_samples(const std::string& technique, int native) {
   return pipeline::emulate(graph, request.features, FunctionalConfig{}, options);
 }
 
-// Four layers of eight samples have the picture of 32 native ones, but for where a partly covered pixel takes its
-// attributes: at one sample of 32, or at one of each layer. Vertices are shaded once. With stencil
-// each layer is classified by itself, so that a simple pixel is lit once a layer; tiles see all samples.
+// Four layers of eight samples have the picture of 32 native ones, but for where a partly covered pixel takes
+// its attributes: at one sample of 32, or at one of each layer. Vertices are shaded once. With stencil each
+// layer is classified by itself, so that a simple pixel is lit once a layer; tiles see all samples.
 TEST(SimpleComplex, LayersOfEightSamplesAreNativeSamples) {
   const std::string reference = "deferred_simple_complex:z_scale=0,normal_dot_min=1,";
   for (const std::string& technique :

@@ -7,8 +7,8 @@
 namespace hwsim::test {
 namespace {
 
-const std::vector<std::string> kNames = {"none",     "csaa",   "msaa2x",   "msaa4x", "smaa",
-                                         "sbaa_top", "agaa",   "rtx4090",  "gtx980", "rtx4070_laptop",
+const std::vector<std::string> kNames = {"none",     "csaa",   "msaa2x",  "msaa4x", "smaa",
+                                         "sbaa_top", "agaa",   "rtx4090", "gtx980", "rtx4070_laptop",
                                          "a",        "sss_gs", "wire_aa"};
 
 TEST(NearName, CaseAndSeparatorsAreNoDifference) {
