@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "hwsim/base/plain_name.h"
+
 namespace hwsim::algos {
 namespace {
 
@@ -23,12 +25,23 @@ const TechniqueInfo* find_technique(std::string_view id) {
   return found == all.end() ? nullptr : &*found;
 }
 
+/// Whether people call a temporal technique so: one that needs the frames before.
+bool is_temporal(std::string_view id) {
+  constexpr std::array<std::string_view, 12> kNames = {
+      "taa", "txaa", "tssaa", "tsaa", "tsr", "dlss", "dlaa", "fsr2", "fsr3", "xess", "smaat2x", "temporal"};
+  const std::string plain = plain_name(id);
+  return std::ranges::any_of(kNames, [&](std::string_view name) { return plain.starts_with(name); });
+}
+
 void add_unknown(Problems& problems, std::string_view id, std::string_view text) {
   std::vector<std::string> ids;
   for (const TechniqueInfo& t : techniques()) ids.emplace_back(t.id);
   const std::string help = "`hwsim list techniques` lists them";
   if (id.empty())
     add(problems, "T001", quoted(text) + " has a part without a name", "", help);
+  else if (is_temporal(id))
+    add(problems, "T001", "unknown technique " + quoted(id) + ": temporal techniques are not modeled", "",
+        help);
   else
     add(problems, "T001", "unknown technique " + quoted(id), did_you_mean(id, ids), help);
 }

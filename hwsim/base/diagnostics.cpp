@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "hwsim/base/plain_name.h"
 #include "hwsim/base/printable.h"
 
 namespace hwsim {
@@ -89,6 +90,49 @@ size_t edit_distance(std::string_view a, std::string_view b) {
   return previous[b.size()];
 }
 
+/// Those that are the name but for case and separators, else those that begin with it: three at most.
+std::vector<std::string> same_or_longer(std::string_view name, std::span<const std::string> candidates) {
+  constexpr std::size_t kLeast = 2, kMost = 3;  // letters that say which name is meant; names in a hint
+  const std::string plain = plain_name(name);
+  std::vector<std::string> same, longer;
+  for (const std::string& candidate : candidates) {
+    const std::string other = plain_name(candidate);
+    if (!other.starts_with(plain)) continue;
+    (other == plain ? same : longer).push_back(candidate);
+  }
+  std::vector<std::string>& found = same.empty() ? longer : same;
+  if (plain.size() < kLeast) found.clear();
+  if (found.size() > kMost) found.resize(kMost);
+  return found;
+}
+
+/// The first of those that fewest letters turn into the name; "" where these are more than a third.
+std::string nearest_by_letters(std::string_view name, std::span<const std::string> candidates) {
+  std::string best;
+  size_t best_distance = 0;
+  const std::string plain = plain_name(name);
+  for (const std::string& candidate : candidates) {
+    const std::string other = plain_name(candidate);
+    const size_t limit = std::max<size_t>(1, std::max(name.size(), candidate.size()) / 3);
+    const auto [shorter, longer] = std::minmax({plain.size(), other.size()});
+    if (longer - shorter > limit) continue;  // as many letters differ at least
+    const size_t distance = edit_distance(plain, other);
+    if (distance <= limit && (best.empty() || distance < best_distance)) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+/// What people leave out at the end beats a letter that they may have mistaken.
+std::vector<std::string> near_names(std::string_view name, std::span<const std::string> candidates) {
+  std::vector<std::string> near = same_or_longer(name, candidates);
+  if (!near.empty()) return near;
+  const std::string nearest = nearest_by_letters(name, candidates);
+  return nearest.empty() ? near : std::vector{nearest};
+}
+
 }  // namespace
 
 InputError::InputError(Diagnostic diagnostic, ExitStatus status)
@@ -147,24 +191,18 @@ void keep_first(std::vector<Diagnostic>& problems) {
 }
 
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates) {
-  std::string best;
-  size_t best_distance = 0;
-  for (const std::string& candidate : candidates) {
-    const auto [shorter, longer] = std::minmax({name.size(), candidate.size()});
-    const size_t limit = std::max<size_t>(1, longer / 3);
-    if (longer - shorter > limit) continue;  // as many letters differ at least
-    const size_t distance = edit_distance(name, candidate);
-    if (distance <= limit && (best.empty() || distance < best_distance)) {
-      best = candidate;
-      best_distance = distance;
-    }
-  }
-  return best;
+  const std::vector<std::string> near = near_names(name, candidates);
+  return near.empty() ? "" : near.front();
 }
 
 std::string did_you_mean(std::string_view name, std::span<const std::string> candidates) {
-  const std::string nearest = nearest_name(name, candidates);
-  return nearest.empty() ? "" : "did you mean `" + nearest + "`?";
+  const std::vector<std::string> near = near_names(name, candidates);
+  std::string hint;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const std::string_view before = i == 0 ? "did you mean " : i + 1 == near.size() ? " or " : ", ";
+    hint += std::string(before) + "`" + near[i] + "`";
+  }
+  return hint.empty() ? "" : hint + "?";
 }
 
 }  // namespace hwsim

@@ -333,7 +333,7 @@ TEST_F(GpuFiles, MessagesNameTheWordAndTheKey) {
   EXPECT_EQ(range.code, "C014");
   ASSERT_FALSE(range.notes.empty());
   EXPECT_NE(range.notes.back().find("`rops` of data sheets is the key `crop_units`"), std::string::npos);
-  EXPECT_EQ(error_in("infinity_cach = 64\n").hint, "did you mean `infinity_cache`?");
+  EXPECT_EQ(error_in("infinity_cach = 64\n").hint, "did you mean `infinity_cache` or `infinity_cache_mib`?");
 }
 
 TEST(GpuKeys, CarryTheirUnitAndEveryCodeIsExplained) {
