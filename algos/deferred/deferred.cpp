@@ -1,6 +1,7 @@
 #include "algos/deferred/deferred.h"
 
 #include <algorithm>
+#include <array>
 
 #include "algos/base/frame_parts.h"
 #include "algos/base/lost_light.h"
@@ -303,8 +304,9 @@ FrameGraph build_simple_complex(const FrameRequest& request, const SimpleComplex
   return graph;
 }
 
-void describe_gbuffer(OptionList& list, DeferredOptions& o, int least_samples) {
-  list.whole("samples", o.samples, {least_samples, 32}, "samples a pixel: a power of two");
+constexpr std::string_view kSamplesWords = "samples a pixel";
+
+void describe_gbuffer(OptionList& list, DeferredOptions& o) {
   list.choice("layout", o.layout, kLayoutChoices, "what the G-buffer holds of a sample");
   describe_centroid(list, o.centroid);
   list.choice("emulate", o.emulate, kEmulateChoices,
@@ -315,13 +317,15 @@ void describe_gbuffer(OptionList& list, DeferredOptions& o, int least_samples) {
 }  // namespace
 
 void describe(OptionList& list, EverySampleOptions& o) {
-  describe_gbuffer(list, o.gbuffer, 1);
+  list.choice("samples", o.gbuffer.samples, "1|2|4|8|16|32", std::array{1, 2, 4, 8, 16, 32}, kSamplesWords);
+  describe_gbuffer(list, o.gbuffer);
   list.choice("lighting", o.lighting, "full_screen|tiles",
               "a full-screen pass, or 16x16 compute tiles that cull lights: with samples=1");
 }
 
 void describe(OptionList& list, SimpleComplexOptions& o) {
-  describe_gbuffer(list, o.gbuffer, 2);
+  list.choice("samples", o.gbuffer.samples, "2|4|8|16|32", std::array{2, 4, 8, 16, 32}, kSamplesWords);
+  describe_gbuffer(list, o.gbuffer);
   list.choice("lighting", o.lighting, "stencil|compute",
               "full-screen passes with stencil, or 16x16 compute tiles");
   list.choice("resolve", o.resolve, "pass|tiles",

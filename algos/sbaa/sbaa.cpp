@@ -1,5 +1,6 @@
 #include "algos/sbaa/sbaa.h"
 
+#include <array>
 #include <cmath>
 
 #include "algos/base/frame_parts.h"
@@ -248,7 +249,7 @@ std::vector<Diagnostic> merge_notes(const SbaaMergeOptions& options, const Drawn
 
 void describe(OptionList& list, SbaaOptions& o) {
   list.whole("n", o.surfaces, {1, 32}, "surfaces kept of a pixel, at most its samples");
-  list.whole("msaa", o.samples, {2, 32}, "visibility samples a pixel: a power of two");
+  list.choice("msaa", o.samples, "2|4|8|16|32", std::array{2, 4, 8, 16, 32}, "visibility samples a pixel");
   list.whole("id_bits", o.id_bits, {4, 16}, "low bits of primitive numbers that are kept");
   list.whole("record_bytes", o.record_bytes, {kLeastRecordBytes, kLargestRecordBytes},
              "G-buffer of a surface; below 32 without position, below 16 without emission");

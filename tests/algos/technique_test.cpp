@@ -53,6 +53,20 @@ TEST(Technique, MistakesAreReportedTogether) {
   EXPECT_EQ(codes("nnoe+msaa4x:sampels=4"), "T001 T002");
 }
 
+/// What an option takes is checked where it is read, not by the frame that it builds.
+TEST(Technique, NumbersOfSamplesArePowersOfTwo) {
+  std::size_t found = 0;
+  for (const TechniqueInfo& t : techniques())
+    for (const OptionInfo& option : t.options) {
+      const bool is_fixed = option.choices.empty() && option.min == option.max;  // the name says it
+      if (is_fixed || (option.name != "samples" && option.name != "msaa")) continue;
+      ++found;
+      EXPECT_EQ(codes(std::string(t.id) + ":" + std::string(option.name) + "=6"), "T003") << t.id;
+      EXPECT_EQ(codes(std::string(t.id) + ":" + std::string(option.name) + "=8"), "") << t.id;
+    }
+  EXPECT_GE(found, 5u);
+}
+
 TEST(Technique, TwoBasesAreRefused) {
   EXPECT_EQ(codes("msaa4x+deferred"), "T004");
   EXPECT_EQ(codes("msaa4x+msaa4x"), "T004");
