@@ -1,5 +1,7 @@
 #include "cli/arguments/argument_errors.h"
 
+#include <algorithm>
+
 #include "cli/arguments/argument_values.h"
 #include "lab/base/messages.h"
 
@@ -74,6 +76,41 @@ std::string full_name(const CLI::App& command) {
              "`hwsim " + full_name(chosen) + " --help` lists the flags");
 }
 
+bool is_typed(const std::string& name, const std::vector<std::string>& words) {
+  return std::ranges::any_of(words, [&](const std::string& word) {
+    const bool is_short = !name.starts_with("--");
+    return word == name || word.starts_with(is_short ? name : name + "=");
+  });
+}
+
+/// CLI11 calls a flag by the first of its long names: `--sms` where `--cores` was typed.
+std::string as_typed(std::string text, const CLI::App& chosen, const std::vector<std::string>& words) {
+  for (const FlagInfo& flag : flags_of(chosen)) {
+    const auto first =
+        std::ranges::find_if(flag.names, [](const auto& name) { return name.starts_with("--"); });
+    if (first == flag.names.end() || is_typed(*first, words)) continue;
+    const auto typed =
+        std::ranges::find_if(flag.names, [&](const auto& name) { return is_typed(name, words); });
+    const std::size_t at = text.find(*first);
+    if (typed == flag.names.end() || at == std::string::npos) continue;
+    const std::size_t end = at + first->size();
+    if (end == text.size() || text[end] == ' ' || text[end] == ':') text.replace(at, first->size(), *typed);
+  }
+  return text;
+}
+
+/// "Could not convert: --clock = 2.6GHz" in the words of the other messages, with the flag's unit.
+std::string conversion_message(const std::string& text, const CLI::App& chosen) {
+  const std::size_t colon = text.find(": "), equals = text.find(" = ");
+  if (colon == std::string::npos || equals == std::string::npos || equals < colon) return text;
+  const std::string name = text.substr(colon + 2, equals - colon - 2);
+  const CLI::Option* const option = chosen.get_option_no_throw(name);
+  const std::string unit = option ? option->get_type_name() : "";
+  const bool has_unit = !unit.empty() && unit != "N" && unit.find('[') == std::string::npos;
+  return name + " is `" + text.substr(equals + 3) + "`, must be a plain number" +
+         (has_unit ? " of " + unit : "");
+}
+
 }  // namespace
 
 void fail_parse(const CLI::ParseError& error, const CLI::App& app, const std::vector<std::string>& words) {
@@ -84,6 +121,8 @@ void fail_parse(const CLI::ParseError& error, const CLI::App& app, const std::ve
     const auto rest = app.remaining(true);
     if (!rest.empty()) fail_unknown_argument(chosen, rest.front());
   }
+  if (dynamic_cast<const CLI::ConversionError*>(&error)) message = conversion_message(message, chosen);
+  message = as_typed(std::move(message), chosen, words);
   if (dynamic_cast<const CLI::RequiredError*>(&error)) fail_usage("U002", message, "", help);
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) fail_usage("U004", message, "", help);
   fail_usage("U003", message, "", help);

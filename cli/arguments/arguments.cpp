@@ -251,8 +251,8 @@ void Parser::add_gpu() {
   number("--rops", gpu_new.sheet.rops, "Pixels that the ROPs write in a clock", "N");
   number("--tmus", gpu_new.sheet.tmus, "Bilinear probes in a clock", "N");
   number("--gpcs,--rasterizers", gpu_new.sheet.rasterizers, "GPCs, shader engines: rasterizers", "N");
-  number("--clock", gpu_new.sheet.clock_mhz, "Clock of the core", "MHZ");
-  number("--bandwidth", gpu_new.sheet.bandwidth_gb_s, "Of the DRAM, 1e9 bytes a second", "GB/S");
+  number("--clock", gpu_new.sheet.clock_mhz, "Clock of the core", "MHz");
+  number("--bandwidth", gpu_new.sheet.bandwidth_gb_s, "Of the DRAM, 1e9 bytes a second", "GB/s");
   sub.add_option("--l2", gpu_new.l2, "Size of L2: 512K, 36M")->type_name("SIZE");
   sub.add_option("--infinity-cache,--llc", gpu_new.llc, "Size of the cache between L2 and DRAM")
       ->type_name("SIZE");

@@ -4,6 +4,7 @@
 #include "lab/base/messages.h"
 #include "lab/catalog/data_sheet.h"
 #include "lab/catalog/gpu_view.h"
+#include "lab/catalog/plausible.h"
 #include "lab/request/run_file.h"
 #include "lab/results/run_files.h"
 
@@ -21,6 +22,7 @@ ExitStatus check(const ConfigArguments& options, const ConfigFolder& folder, Log
       } else {
         const GpuConfig gpu = load_gpu_from_options(folder, name, {}, {});
         for (const Diagnostic& warning : kept_rates(gpu)) log.report(warning);
+        for (const Diagnostic& warning : implausible_numbers(gpu)) log.report(warning);
         table.rows.push_back({name, gpu.id, "ok"});
       }
     } catch (const InputError& error) {

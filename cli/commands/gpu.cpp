@@ -10,6 +10,7 @@
 #include "lab/base/messages.h"
 #include "lab/catalog/data_sheet.h"
 #include "lab/catalog/gpu_view.h"
+#include "lab/catalog/plausible.h"
 
 namespace hwsim::cli {
 namespace {
@@ -49,6 +50,7 @@ ExitStatus gpu_new(const GpuNewArguments& options, Context& context) {
     fail("U013", "`" + path + "` exists and is not overwritten", "",
          "another --out, or --force to replace it");
   write_file(path, to_toml(made));
+  for (const Diagnostic& warning : implausible_numbers(made.gpu)) context.log.report(warning);
   print(
       {.table = sheet_table(made),
        .footing = fmt::format("\n{} extends {}; next: hwsim run sponza_hall -g {}\n", path, made.like, path)},

@@ -294,7 +294,7 @@ class GpuFiles::Loader {
     }
     if (!key) {
       Diagnostic d = unknown_key(keys_, name, subject, resolved.entry.key_place);
-      if (d.hint.empty()) d.hint = did_you_mean(name, sheet_word_names());
+      d.hint = unknown_key_hint(keys_, resolved.entry, d.hint);
       const auto inherited = resolved_.find(nearest_key(keys_, name));
       if (inherited != resolved_.end() && inherited->second.entry.value && inherited->second.origin.line > 0)
         d.notes.push_back("inherited value " + to_toml(*inherited->second.entry.value) + " from " +

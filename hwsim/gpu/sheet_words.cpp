@@ -4,6 +4,7 @@
 #include <array>
 
 #include "hwsim/config/assign.h"
+#include "hwsim/config/unit_suffix.h"
 
 namespace hwsim {
 namespace {
@@ -46,6 +47,16 @@ void translate(const SheetWord& word, TomlEntry& entry) {
   if (entry.value) entry.value = scaled(*entry.value, word.factor);
   if (entry.interval)
     for (double& end : *entry.interval) end *= word.factor;
+}
+
+std::string unknown_key_hint(std::span<const Key> keys, const TomlEntry& entry, const std::string& near_key) {
+  const std::vector<std::string> words = sheet_word_names();
+  std::vector<std::string> names;
+  for (const Key& key : keys) names.emplace_back(key.info.name);
+  names.insert(names.end(), words.begin(), words.end());
+  std::string hint = other_unit_hint(entry.path, entry.value, names);
+  if (hint.empty()) hint = near_key;
+  return hint.empty() ? did_you_mean(entry.path, words) : hint;
 }
 
 }  // namespace hwsim

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "hwsim/config/key.h"
 #include "hwsim/config/toml_file.h"
 
 namespace hwsim {
@@ -23,5 +24,9 @@ void translate(const SheetWord& word, TomlEntry& entry);
 
 /// Null for what is no such word.
 const SheetWord* find_sheet_word(std::string_view word);
+
+/// What an unknown key may mean: a key or word of another unit with the value in it, else the key that is
+/// near to it (`near_key`, as a hint), else a word.
+std::string unknown_key_hint(std::span<const Key> keys, const TomlEntry& entry, const std::string& near_key);
 
 }  // namespace hwsim

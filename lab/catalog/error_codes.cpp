@@ -76,6 +76,9 @@ constexpr ErrorCode kCodes[] = {
      "A list of prices (`hwsim optimize --prices`) has a table for each number of a GPU that may be chosen: "
      "its area, "
      "its bounds, its step, and the keys that scale with it."},
+    {"C027", "number that no GPU ever had",
+     "A clock, a size or a number of units is smaller or larger than those of any GPU: it may be in another "
+     "unit than the key's. The number is taken as it is."},
     {"U041", "nothing to optimize",
      "`hwsim optimize` changes one GPU for frames: techniques, and views that --vary names."},
     {"K001", "damaged file in the cache",

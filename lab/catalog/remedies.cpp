@@ -122,6 +122,7 @@ constexpr std::array kRemedies = {
     Remedy{"U023", "give fewer folders, or run with fewer techniques and GPUs"},
     Remedy{"U030", "leave the flag out, or give a scene"},
     Remedy{"C026", "begin from configs/prices/example.toml"},
+    Remedy{"C027", "write the number in the unit that the key ends in"},
     Remedy{"U041", "a scene, -t with techniques, and --vary of scene, camera, resolution or scene.*"},
     Remedy{"U040", "emulate the frame anew for this GPU"},
     Remedy{"X001", "please report the message: it is a mistake in hwsim"},

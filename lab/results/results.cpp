@@ -6,6 +6,7 @@
 
 #include "hwsim/base/units_of_measure.h"
 #include "lab/catalog/data_sheet.h"
+#include "lab/catalog/plausible.h"
 #include "pipeline/image/frame_check.h"
 #include "pipeline/scene/scene.h"
 
@@ -61,6 +62,7 @@ std::vector<Diagnostic> result_warnings(const PointResult& point) {
   std::vector<Diagnostic> warnings =
       algos::frame_notes(*point.technique, {point.emulation->trace, point.surfaces});
   for (Diagnostic& warning : kept_rates(*point.gpu)) warnings.push_back(std::move(warning));
+  for (Diagnostic& warning : implausible_numbers(*point.gpu)) warnings.push_back(std::move(warning));
   if (!draws_a_scene(point.emulation->trace)) return warnings;
   const auto look = pipeline::check_frame(point.emulation->color, pipeline::Scene{}.background);
   warnings.insert(warnings.end(), look.begin(), look.end());

@@ -119,6 +119,19 @@ TEST_F(GpuFiles, UnknownKeyNamesTheNearestAndTheInheritedValue) {
   EXPECT_FALSE(d.help.empty());
 }
 
+TEST_F(GpuFiles, KeysOfAnotherUnitAreHintedWithTheNumber) {
+  const std::pair<const char*, const char*> hints[] = {
+      {"core_clock_ghz = 2.6", "did you mean `core_clock_mhz`, in MHz: 2600?"},
+      {"clock_ghz = 1", "did you mean `clock_mhz`, in MHz: 1000?"},
+      {"l2_size_mib = 36", "did you mean `l2_size_kib`, in KiB: 36864?"},
+      {"l2_size_mib = \"x2\"", "did you mean `l2_size_kib`, in KiB, 1024 times the number?"},
+      {"dram_bandwidth_tb_s = 0.64", "did you mean `dram_bandwidth_gb_s`, in GB/s: 640?"},
+      {"infinity_cache_kib = 65536", "did you mean `infinity_cache_mib`, in MiB: 64?"},
+      {"pass_overhead_ns = 4000", "did you mean `pass_overhead_us`, in us: 4?"},
+      {"core_clock = 2600", "did you mean `core_clock_mhz`?"}};
+  for (const auto& [line, hint] : hints) EXPECT_EQ(error_in(std::string(line) + "\n").hint, hint) << line;
+}
+
 TEST_F(GpuFiles, FeatureWithoutItsTableIsRecognized) {
   EXPECT_EQ(error_in("float_atomics = true\n").hint, "did you mean `features.float_atomics`?");
   EXPECT_EQ(error_in("[featuers]\nfloat_atomics = true\n").hint, "did you mean `features.float_atomics`?");
