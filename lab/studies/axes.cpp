@@ -12,6 +12,7 @@
 #include "lab/base/table.h"
 #include "lab/base/text.h"
 #include "lab/request/request_words.h"
+#include "lab/studies/whole_settings.h"
 
 namespace hwsim::lab {
 namespace {
@@ -39,8 +40,9 @@ std::string number_text(double value) {
 }
 
 double at_share(const Axis::Range& range, double share) {
-  if (range.logarithmic) return range.low * std::pow(range.high / range.low, share);
-  return range.low + (range.high - range.low) * share;
+  const double value = range.logarithmic ? range.low * std::pow(range.high / range.low, share)
+                                         : range.low + (range.high - range.low) * share;
+  return range.whole ? std::round(value) : value;
 }
 
 /// Nothing when it is not of the form lo..hi.
@@ -60,14 +62,18 @@ void fill_range(Axis& axis, const std::string& text, const std::vector<std::stri
   if (parts.size() == 3 && parts[2] != "log") fail_axis(text, "after the count only `log` may stand");
   if (parts.size() > 3) fail_axis(text, "it has too many parts");
   axis.range->logarithmic = parts.size() == 3;
+  axis.range->whole = is_whole_setting(axis.path);
   if (axis.range->logarithmic && axis.range->low <= 0.0)
     fail_axis(text, "a logarithmic range must be positive");
   if (parts.size() == 1) return;
   int count = 0;
   if (!read_number(std::string_view(parts[1]), count) || count < 2 || count > kMaxPoints)
     fail_axis(text, fmt::format("the count must be a whole number from 2 to {}", kMaxPoints));
-  for (int i = 0; i < count; ++i)
-    axis.values.push_back(number_text(at_share(*axis.range, static_cast<double>(i) / (count - 1))));
+  for (int i = 0; i < count; ++i) {
+    std::string value = number_text(at_share(*axis.range, static_cast<double>(i) / (count - 1)));
+    const bool is_new = axis.values.empty() || axis.values.back() != value;  // whole numbers may come twice
+    if (is_new) axis.values.push_back(std::move(value));
+  }
 }
 
 void require_values(const Axis& axis, const std::string& text) {

@@ -15,6 +15,7 @@ struct Axis {
   struct Range {
     double low = 0.0, high = 0.0;
     bool logarithmic = false;
+    bool whole = false;  ///< what varies counts things: values are rounded
   };
   std::string path;
   std::vector<std::string> values;  ///< empty for a range without a count, which only sampling takes

@@ -59,6 +59,32 @@ TEST(Axes, LogarithmicRangesHaveEqualRatios) {
   EXPECT_EQ(axis.values, (std::vector<std::string>{"256", "512", "1024", "2048", "4096"}));
 }
 
+TEST(Axes, WhatCountsThingsHasWholeNumbers) {
+  const auto values = [](const char* text) { return parse_axis(text).values; };
+  using Values = std::vector<std::string>;
+  EXPECT_EQ(values("gpu.rops=16..128:5:log"), (Values{"16", "27", "45", "76", "128"}));
+  EXPECT_EQ(values("gpu.crop_units=16..128:4"), (Values{"16", "53", "91", "128"}));
+  EXPECT_EQ(values("gpu.features.native_msaa_max=1..8:5:log"), (Values{"1", "2", "3", "5", "8"}));
+  EXPECT_EQ(values("scene.point_lights=0..3:3"), (Values{"0", "2", "3"}));
+  EXPECT_EQ(values("technique.list_cap=1..4:5:log"), (Values{"1", "2", "3", "4"})) << "2 came twice";
+  EXPECT_EQ(values("gpu.rops=1..3:9"), (Values{"1", "2", "3"}));
+  for (const char* real : {"gpu.core_clock_mhz", "gpu.infinity_cache", "scene.light_range", "technique.k"})
+    EXPECT_EQ(values((std::string(real) + "=1..2:3").c_str()), (Values{"1", "1.5", "2"})) << real;
+  EXPECT_EQ(values("gpu.no_such_key=1..2:3"), (Values{"1", "1.5", "2"})) << "told by what reads it";
+}
+
+TEST(LatinHypercube, TakesWholeNumbersOfWhatCountsThings) {
+  const Points points = all({parse_axes({"gpu.rops=16..128", "gpu.core_clock_mhz=500..1500"}), 40, 1});
+  std::set<std::string> clocks;
+  for (const auto& point : points) {
+    EXPECT_EQ(point[0].value.find_first_not_of("0123456789."), std::string::npos) << point[0].value;
+    EXPECT_EQ(number(point[0]), std::round(number(point[0])));
+    EXPECT_TRUE(number(point[0]) >= 16 && number(point[0]) <= 128);
+    clocks.insert(point[1].value);
+  }
+  EXPECT_EQ(clocks.size(), points.size());
+}
+
 TEST(LatinHypercube, UsesEachStratumOfEachRangeOnce) {
   constexpr int kPoints = 64;
   const std::vector<Axis> axes = parse_axes({"gpu.a=2..10", "gpu.b=1..1024:2:log"});
