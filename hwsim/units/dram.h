@@ -42,7 +42,8 @@ struct Dram {
           c.dram_cpu_share_ratio);
     v.key({"dram_latency_cycles", 0, 1e5, kSlower, "core clocks of a read from DRAM, unloaded"},
           c.dram_latency_cycles);
-    v.key({"dram_channels", 1, 256, kNeither, "engine detailed: independent channels"}, c.dram_channels);
+    v.key({"dram_channels", 1, 256, kNeither, "independent channels, which share the turns of the bus"},
+          c.dram_channels);
     v.key({"dram_banks", 1, 256, kFaster, "engine detailed: banks of a channel"}, c.dram_banks);
     v.key({"dram_interleave_bytes", 64, 65536, kNeither,
            "engine detailed: neighboring bytes that go to one channel, in whole lines"},
