@@ -71,7 +71,7 @@ void add_common(CLI::App& app, CommonArguments& common) {
       *group, "--color", "Colored messages; NO_COLOR and TERM=dumb are obeyed", when,
       [&common](When value) { common.color = value; }, "HWSIM_COLOR");
   add_choice<When>(
-      *group, "--progress", "Progress bar; auto: only on a terminal", when,
+      *group, "--progress", "Progress; auto: a bar on a terminal, elsewhere a line for every 10 %", when,
       [&common](When value) { common.progress = value; }, "HWSIM_PROGRESS");
   common.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   group->add_option("--jobs", common.jobs, "Threads; the results do not depend on it")
@@ -144,7 +144,7 @@ void add_view(CLI::App& app, ViewArguments& view, bool required) {
   add_view_flags(app, view);
 }
 
-void add_points(CLI::App& app, RunArguments& run) {
+void add_points(CLI::App& app, RunArguments& run, const std::string& techniques) {
   app.add_option_function<std::vector<std::string>>(
          "-t,--technique",
          [&run](const std::vector<std::string>& texts) {
@@ -152,7 +152,7 @@ void add_points(CLI::App& app, RunArguments& run) {
              for (std::string& technique : split_techniques(text))
                run.techniques.push_back(std::move(technique));
          },
-         "Techniques, separated by commas (repeatable); default none")
+         "Techniques, separated by commas (repeatable); default " + techniques)
       ->allow_extra_args(false)
       ->type_name("NAME[:key=value]");
   app.add_option_function<std::vector<std::string>>(

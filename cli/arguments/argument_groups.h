@@ -19,8 +19,8 @@ void add_report_file(CLI::App& app, std::string& file);
 void add_view_flags(CLI::App& app, ViewArguments& view);
 /// The scene itself, then the flags of its view.
 void add_view(CLI::App& app, ViewArguments& view, bool required);
-/// Which techniques on which GPUs.
-void add_points(CLI::App& app, RunArguments& run);
+/// Which techniques on which GPUs; `techniques`: those that are taken where none is named.
+void add_points(CLI::App& app, RunArguments& run, const std::string& techniques = "none");
 void add_reference_shadows(CLI::App& app, ViewArguments& view);
 void add_reference_samples(CLI::App& app, RunArguments& run);
 void add_no_image(CLI::App& app, RunArguments& run);

@@ -132,7 +132,7 @@ void Parser::add_explain() {
 void Parser::add_rank() {
   CLI::App& sub = add(app, "rank", kHelpRank, [this] { return Command(rank); });
   add_view(sub, rank.view, true);
-  add_points(sub, rank);
+  add_points(sub, rank, "all");
   add_reference_samples(sub, rank);
   add_no_image(sub, rank);
   sub.add_option("--budget", rank.budget, "Limits of aa_ms, frame_ms, extra_mib, memory_mib, dram_mb")

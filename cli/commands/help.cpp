@@ -16,11 +16,20 @@ bool looks_like_code(const std::string& topic) {
          std::all_of(topic.begin() + 1, topic.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-void print_codes(const HelpArguments& options) {
+std::string command_list() {
+  Table table{{{"command", "command"}, {"does", "does", false, 100}}, {}};
+  for (const CommandInfo& command : describe_commands())
+    table.rows.push_back({command.name, command.description});
+  return "hwsim help COMMAND explains one, as hwsim COMMAND --help does:\n\n" + to_text(table) + "\n";
+}
+
+/// Commands for people; the codes are data, too.
+void print_topics(const HelpArguments& options) {
   Table table{{{"code", "code"}, {"title", "means"}}, {}};
   for (const ErrorCode& code : error_codes())
     table.rows.push_back({std::string(code.code), std::string(code.title)});
-  print({.table = table, .heading = "hwsim help CODE explains one:\n\n"}, options.common);
+  print({.table = table, .heading = command_list() + "hwsim help CODE explains the message that has it:\n\n"},
+        options.common);
 }
 
 ExitStatus explain(std::string topic) {
@@ -40,7 +49,7 @@ ExitStatus explain(std::string topic) {
 
 ExitStatus help(const HelpArguments& options, Context&) {
   if (options.topic.empty()) {
-    print_codes(options);
+    print_topics(options);
     return ExitStatus::done;
   }
   if (looks_like_code(options.topic)) return explain(options.topic);
@@ -51,7 +60,7 @@ ExitStatus help(const HelpArguments& options, Context&) {
   std::vector<std::string> names;
   for (const CommandInfo& command : describe_commands()) names.push_back(command.name);
   fail_usage("U014", "no help on `" + options.topic + "`", did_you_mean(options.topic, names),
-             "`hwsim help` lists the codes, `hwsim --help` the commands");
+             "`hwsim help` lists the commands and the codes");
 }
 
 }  // namespace hwsim::cli

@@ -11,7 +11,13 @@
 namespace hwsim::cli {
 namespace {
 
+bool is_claim(const ReproducedRow& row) { return row.cell.use == cost_models::RowUse::claim; }
+
 std::string figures_text(const Reproduction& reproduction) {
+  if (std::ranges::all_of(reproduction.rows, is_claim))
+    return fmt::format(
+        "this paper printed no times and no counts: {} claims in words, which --format csv lists\n",
+        reproduction.rows.size());
   if (!reproduction.figures) return "no fitted row could be run\n";
   const cost_models::Figures& f = *reproduction.figures;
   return fmt::format(

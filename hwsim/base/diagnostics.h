@@ -67,11 +67,11 @@ std::string_view whole_characters(std::string_view text, std::size_t first, std:
 /// A name for a message: its beginning and "..." where it is long.
 std::string shortened(std::string_view name);
 
-/// The candidate nearest to `name` by edit distance (transpositions count 1), or "" if none is near enough
-/// (more than a third of the longer name's length away).
+/// The candidate that is `name` but for case and separators, else one that begins with it, else the nearest
+/// by letters (a swap counts 1), or "" if more than a third of the longer name's letters differ.
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates);
 
-/// "did you mean `l2_size_kib`?" with the nearest candidate, or "" if none is near enough.
+/// "did you mean `msaa2x` or `msaa4x`?": those that nearest_name chooses from, three at most; "" for none.
 std::string did_you_mean(std::string_view name, std::span<const std::string> candidates);
 
 }  // namespace hwsim

@@ -14,7 +14,7 @@ enum class Measure : unsigned char { frequency, size, rate, time };
 struct Unit {
   std::string_view suffix, name;
   Measure measure;
-  double factor;  ///< of the measure's first unit
+  double factor;  ///< so many of the measure's first unit
 };
 
 constexpr double kKib = 1024.0;

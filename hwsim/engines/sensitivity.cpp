@@ -6,6 +6,7 @@
 #include "hwsim/config/assign.h"
 #include "hwsim/gpu/gpu_keys.h"
 #include "hwsim/gpu/gpu_lift.h"
+#include "hwsim/gpu/gpu_rules.h"
 #include "hwsim/timing/dual.h"
 #include "hwsim/timing/time_pass.h"
 
@@ -32,13 +33,21 @@ T frame_time_ns(const WorkTrace& trace, const GpuValues<T>& gpu, Engine engine) 
       trace, [&](const PassWork& pass, bool waits) { return time_pass(pass, rates, engine, waits).time_ns; });
 }
 
-std::optional<double> doubled_time_ns(const WorkTrace& trace, const GpuValues<double>& gpu, const Key& key,
+/// Whether twice the value makes a GPU, alone and beside the other keys.
+bool is_gpu(const GpuConfig& gpu, const Key& key) {
+  std::vector<Diagnostic> problems;
+  if (check_range(key)) return false;
+  check_rules(gpu, problems);
+  return problems.empty();
+}
+
+std::optional<double> doubled_time_ns(const WorkTrace& trace, const GpuConfig& gpu, const Key& key,
                                       Engine engine) {
   double& slot = *std::get<double*>(key.slot);
   const double value = slot;
   std::optional<double> time;
   slot = 2.0 * value;
-  if (!check_range(key)) time = frame_time_ns(trace, gpu, engine);
+  if (is_gpu(gpu, key)) time = frame_time_ns<double>(trace, gpu, engine);
   slot = value;
   return time;
 }
@@ -46,7 +55,8 @@ std::optional<double> doubled_time_ns(const WorkTrace& trace, const GpuValues<do
 }  // namespace
 
 std::vector<Sensitivity> sensitivities(const WorkTrace& trace, const GpuConfig& gpu, Engine engine) {
-  GpuValues<double> values = gpu;
+  GpuConfig changed = gpu;
+  GpuValues<double>& values = changed;
   const std::vector<Key> keys = keys_of(values);
   std::vector<Key> reals;
   for (const Key& key : keys)
@@ -56,9 +66,10 @@ std::vector<Sensitivity> sensitivities(const WorkTrace& trace, const GpuConfig& 
     const Number time = frame_time_ns(trace, seeded(values, first), engine);
     for (std::size_t i = 0; i < kWidth && first + i < reals.size(); ++i) {
       const Key& key = reals[first + i];
+      if (!applies(key.info.name, values)) continue;
       Sensitivity s{key.info.name, *std::get<double*>(key.slot), time.d[i], 0.0, {}};
       s.elasticity = time.v > 0.0 ? s.slope_ns * s.value / time.v : 0.0;
-      s.doubled_ns = doubled_time_ns(trace, values, key, engine);
+      s.doubled_ns = doubled_time_ns(trace, changed, key, engine);
       result.push_back(s);
     }
   }

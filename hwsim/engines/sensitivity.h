@@ -15,11 +15,11 @@ struct Sensitivity {
   double value = 0.0;
   double slope_ns = 0.0;             ///< d(frame time) / d(value)
   double elasticity = 0.0;           ///< percent of time a percent of value; negative: more of it is faster
-  std::optional<double> doubled_ns;  ///< the frame's time with twice the value; none outside the key's range
+  std::optional<double> doubled_ns;  ///< the frame's time with twice the value; none where that is no GPU
 };
 
-/// One entry a real number of the GPU that enters the timing, in file order. At a kink (two units equally
-/// late) it is the derivative of one side.
+/// One entry a real number that enters the timing of a GPU of this kind, in file order. At a kink (two units
+/// equally late) it is the derivative of one side.
 std::vector<Sensitivity> sensitivities(const WorkTrace& trace, const GpuConfig& gpu, Engine engine);
 
 struct UnitHeadroom {

@@ -71,6 +71,11 @@ void check_rules(const GpuConfig& c, std::vector<Diagnostic>& problems) {
                 {"export_128bit_ratio", "export_64bit_ratio"});
 }
 
+bool applies(std::string_view key, const GpuValues<double>& gpu) {
+  if (key.starts_with("vliw_")) return gpu.vliw_slots > 1.0;
+  return gpu.tile_based || key == "tile_based" || !key.starts_with("tile_");
+}
+
 void check_ids(std::span<const GpuConfig> gpus, std::vector<Diagnostic>& problems) {
   const auto folder = [](std::string id) {
     for (char& c : id)

@@ -7,6 +7,7 @@
 #include "algos/base/technique.h"
 #include "hwsim/base/file_name.h"
 #include "hwsim/base/units_of_measure.h"
+#include "lab/base/scene_kinds.h"
 #include "pipeline/open/scene_check.h"
 #include "pipeline/open/scene_source.h"
 #include "pipeline/reference/shadow_detail.h"
@@ -23,7 +24,7 @@ std::vector<TableCell> scene_row(const pipeline::Scene& scene) {
           s.vertices,
           std::uint64_t{scene.meshes.size()},
           std::uint64_t{scene.instances.size()},
-          std::uint64_t{scene.materials.size()},
+          std::uint64_t{scene.materials.size() - 1},  // without the loader's own, which no file has
           std::uint64_t{scene.textures.size()},
           Real{static_cast<double>(s.texture_bytes) / kBytesPerMib, 1},
           s.drawn_mask_triangles,
@@ -89,7 +90,7 @@ std::vector<Diagnostic> findings(const std::string& name, const pipeline::Scene&
 CheckedScenes check_scenes(const std::vector<std::string>& names, const std::string& folder) {
   CheckedScenes checked{.table = {scene_columns(), {}}};
   for (const std::string& name : names) try {
-      const pipeline::Scene scene = pipeline::open_scene(name, folder);
+      const pipeline::Scene scene = opened_scene(name, [&] { return pipeline::open_scene(name, folder); });
       std::vector<Diagnostic> notes = findings(name, scene);
       checked.table.rows.push_back(scene_row(scene));
       checked.notes.push_back(std::move(notes));

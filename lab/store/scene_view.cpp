@@ -12,6 +12,7 @@
 #include "hwsim/base/byte_codec.h"
 #include "hwsim/base/file_name.h"
 #include "lab/base/messages.h"
+#include "lab/base/scene_kinds.h"
 #include "lab/request/image_input.h"
 #include "lab/store/free_camera.h"
 #include "pipeline/base/sealed_file.h"
@@ -231,8 +232,9 @@ void SceneView::release() {
 void SceneView::load() {
   std::shared_ptr<const pipeline::Scene> scene = shelf_ ? shelf_->find(load_text()) : nullptr;
   if (!scene)
-    scene = std::make_shared<const pipeline::Scene>(
-        pipeline::open_scene(plan_.scene, cache_.directory(CacheFolder::scenes), load_options(plan_)));
+    scene = std::make_shared<const pipeline::Scene>(opened_scene(plan_.scene, [&] {
+      return pipeline::open_scene(plan_.scene, cache_.directory(CacheFolder::scenes), load_options(plan_));
+    }));
   summary_ = {scene->name,
               scene->content_hash,
               {},

@@ -51,6 +51,10 @@ std::vector<Limit> parse_budget(const std::string& text) {
       fail_usage("U022",
                  "--budget limits `" + name + "`, must be aa_ms, dram_mb, extra_mib, frame_ms or memory_mib",
                  did_you_mean(name, names));
+    if (limit.at_most < 0.0)
+      fail_usage("U022",
+                 "the limit of `" + trimmed(piece) + "` in --budget is negative: nothing stays within it", "",
+                 "a limit of 0 or more");
     limits.push_back(std::move(limit));
   }
   return limits;

@@ -3,6 +3,7 @@
 #include "hwsim/base/units_of_measure.h"
 #include "hwsim/engines/sensitivity.h"
 #include "hwsim/gpu/gpu_keys.h"
+#include "hwsim/gpu/gpu_rules.h"
 #include "hwsim/timing/time_slopes.h"
 #include "lab/base/messages.h"
 
@@ -28,7 +29,7 @@ PointResult timed(const KeptFrame& frame, const GpuConfig& gpu) {
   return point;
 }
 
-/// The real numbers of a GPU that enter times.
+/// The real numbers that enter the times of a GPU of this kind.
 struct Reals {
   std::vector<std::string> keys;
   std::vector<double> values;
@@ -38,7 +39,7 @@ Reals reals_of(const GpuConfig& gpu) {
   Reals reals;
   GpuValues<double> copy = gpu;
   for (const Key& key : keys_of(copy))
-    if (const auto* slot = std::get_if<double*>(&key.slot)) {
+    if (const auto* slot = std::get_if<double*>(&key.slot); slot && applies(key.info.name, gpu)) {
       reals.keys.emplace_back(key.info.name);
       reals.values.push_back(**slot);
     }

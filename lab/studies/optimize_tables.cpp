@@ -40,6 +40,23 @@ std::string missed(const Optimization& found) {
       time_text(best.frames[best.slowest]));
 }
 
+/// "lower" or "upper" where a value stands at an end of what it may be; the last step may be short of `high`.
+std::string_view bound_of(const PricedKey& key, double value) {
+  constexpr double kNear = 1e-6;
+  const double highest = key.step > 0.0 ? key.high - key.step : key.high;
+  if (value <= key.low * (1.0 + kNear)) return "lower";
+  const bool is_last = key.step > 0.0 ? value > highest * (1.0 + kNear) : value >= highest * (1.0 - kNear);
+  return is_last ? "upper" : "";
+}
+
+nlohmann::ordered_json bounds_of(const OptimizedGpu& gpu, const std::vector<PricedKey>& keys) {
+  nlohmann::ordered_json bounds = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (const std::string_view bound = bound_of(keys[i], gpu.values[i]); !bound.empty())
+      bounds[keys[i].key] = bound;
+  return bounds;
+}
+
 nlohmann::ordered_json json_of(const OptimizedGpu& gpu, const std::vector<PricedKey>& keys) {
   nlohmann::ordered_json values = nlohmann::ordered_json::object(), frames = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < keys.size(); ++i) values[keys[i].key] = gpu.values[i];
@@ -77,13 +94,16 @@ Table optimized_keys(const Optimization& found) {
                {"low", "from", true},
                {"high", "to", true},
                {"step", "step", true},
-               {"area", "area", true}},
+               {"area", "area", true},
+               {"bound", "ended"}},
               {}};
   for (std::size_t i = 0; found.best && i < found.keys.size(); ++i) {
     const PricedKey& key = found.keys[i];
     const double best = found.best->values[i];
+    const std::string_view bound = bound_of(key, best);
     table.rows.push_back({key.key, Real{found.unchanged.values[i], 2}, Real{best, 2}, Real{key.low, 2},
-                          Real{key.high, 2}, Real{key.step, 2}, Real{key.area * best, 1}});
+                          Real{key.high, 2}, Real{key.step, 2}, Real{key.area * best, 1},
+                          bound.empty() ? "" : fmt::format("on its {} bound", bound)});
   }
   return table;
 }
@@ -137,6 +157,7 @@ nlohmann::ordered_json to_json(const Optimization& found) {
     json["met"] = found.met;
     json["verdict"] = found.verdict;
     json["best"] = json_of(*found.best, found.keys);
+    json["best"]["bounds"] = bounds_of(*found.best, found.keys);
     nlohmann::ordered_json settings = nlohmann::ordered_json::object();
     for (const Assignment& set : found.settings) settings[set.path] = set.value;
     json["settings"] = settings;

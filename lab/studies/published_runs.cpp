@@ -93,6 +93,23 @@ void check_settings(const std::vector<cost_models::Cell>& cells, const ConfigFol
   if (!problems.empty()) throw InputError(problems);
 }
 
+/// GPUs of runs that no file describes, each once, with the file that names them.
+void check_gpus(const std::vector<cost_models::Cell>& cells, const ConfigFolder& folder) {
+  std::set<std::string> known;
+  std::vector<Diagnostic> problems;
+  for (const cost_models::Cell& cell : cells) {
+    if (!cell.has_run || !known.insert(cell.run.gpu).second) continue;
+    try {
+      load_gpu(cell.run.gpu, {}, {}, folder.gpus());
+    } catch (const InputError& error) {
+      append(problems, error);
+    }
+  }
+  for (Diagnostic& problem : problems)
+    if (problem.place.file.empty()) problem.place.file = folder.published() + "/mapping/gpus.csv";
+  if (!problems.empty()) throw InputError(problems);
+}
+
 }  // namespace
 
 Request request_of(const RunSpec& run) {
@@ -118,6 +135,7 @@ std::vector<cost_models::Cell> published_cells(const std::vector<std::string>& p
       cost_models::map_rows(cost_models::load_published(folder.published()), folder.published());
   check_papers(papers, cells);
   check_settings(cells, folder);
+  check_gpus(cells, folder);
   if (!papers.empty())
     std::erase_if(cells,
                   [&](const cost_models::Cell& cell) { return !is_one_of(cell.row.document, papers); });

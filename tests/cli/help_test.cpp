@@ -66,6 +66,21 @@ TEST(HelpTest, EveryCommandOfTheTopLevelIsTested) {
   EXPECT_GE(count, 10u);
 }
 
+TEST(HelpTest, ListsCommandsAndCodes) {
+  const Workplace place;
+  const std::string text = place.hwsim("help").out;
+  for (const char* word : {"\nsweep ", "\ncache prune ", "\nC012 "})
+    EXPECT_NE(text.find(word), std::string::npos) << word << " is not in:\n" << text;
+}
+
+TEST(HelpTest, SaysWhatHappens) {
+  const Workplace place;
+  EXPECT_NE(place.hwsim("rank --help").out.find("default all"), std::string::npos);
+  const std::string run = place.hwsim("run --help").out;
+  EXPECT_NE(run.find("default none"), std::string::npos);
+  EXPECT_NE(run.find("elsewhere a line for every"), std::string::npos) << run;
+}
+
 // A code that nobody explains sends the user to a dead end; an explanation of a code that is gone misleads.
 TEST(HelpTest, ExplainsExactlyTheCodesThatTheSourcesUse) {
   const std::regex code("\"([A-Z][0-9]{3})\"");

@@ -96,6 +96,8 @@ TEST(SceneCheck, CountsAndNotes) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const json rows = json::parse(outcome.out);
   EXPECT_EQ(rows[0]["drawn_triangles"], 1);
+  EXPECT_EQ(rows[0]["materials"], 0) << "the loader's own is none of the file's";
+  EXPECT_NE(rows[0]["notes"].dump().find("0 materials: "), std::string::npos) << rows[0]["notes"];
   EXPECT_FALSE(rows[0]["notes"].empty()) << "normals, a light and a camera were added";
 }
 

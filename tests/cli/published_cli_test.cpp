@@ -50,6 +50,26 @@ TEST(Published, ReproduceWritesTheColumnsOfTheContractAndItsPage) {
       << "a page is not replaced unasked";
 }
 
+TEST(Published, APaperWithoutTimesSaysSo) {
+  const Workplace place;
+  EXPECT_NE(place.hwsim("reproduce wire_aa").out.find("printed no times"), std::string::npos);
+}
+
+TEST(Published, ADryRunRefusesAnUnknownGpuAsTheRunDoes) {
+  const Workplace place;
+  std::filesystem::copy(hwsim::test::source_dir() + "/configs", place / "configs",
+                        std::filesystem::copy_options::recursive);
+  const std::string gpus = place.read("configs/published/mapping/gpus.csv");
+  place.write("configs/published/mapping/gpus.csv",
+              std::string(gpus).replace(gpus.find("gf840m"), std::string("gf840m").size(), "gf841m"));
+  for (const char* command : {"reproduce axaa --dry-run", "reproduce axaa", "validate --dry-run"}) {
+    const Outcome outcome = place.hwsim(command, "HWSIM_CONFIG_DIR=configs");
+    EXPECT_EQ(outcome.status, 3) << command;
+    for (const char* words : {"error[C016]", "gf841m", "gpus.csv"})
+      EXPECT_NE(outcome.err.find(words), std::string::npos) << command << ": " << outcome.err;
+  }
+}
+
 TEST(Published, MappingMistakesAreReportedWithTheirLine) {
   const Workplace place;
   std::filesystem::copy(hwsim::test::source_dir() + "/configs", place / "configs",

@@ -6,6 +6,7 @@
 
 #include "hwsim/engines/sensitivity.h"
 #include "hwsim/gpu/gpu_keys.h"
+#include "hwsim/gpu/gpu_rules.h"
 #include "hwsim/sample_gpu.h"
 
 namespace hwsim::test {
@@ -39,8 +40,8 @@ TEST(Derivative, OfEveryRealKeyEqualsTheFiniteDifference) {
   for (const Engine engine : {Engine::roofline, Engine::queue}) {
     const std::vector<Sensitivity> all = sensitivities(trace, gpu, engine);
     EXPECT_EQ(all.size(),
-              static_cast<std::size_t>(std::count_if(keys.begin(), keys.end(), [](const Key& key) {
-                return std::holds_alternative<double*>(key.slot);
+              static_cast<std::size_t>(std::count_if(keys.begin(), keys.end(), [&](const Key& key) {
+                return std::holds_alternative<double*>(key.slot) && applies(key.info.name, gpu);
               })));
     const double frame_ns = time_frame(trace, gpu, engine).time_ns;
     for (const Sensitivity& s : all) {
@@ -62,6 +63,40 @@ TEST(Derivative, OfEveryRealKeyEqualsTheFiniteDifference) {
     }
   }
   EXPECT_GT(nonzero, 20u);
+}
+
+TEST(Sensitivity, NumbersOfAnotherKindOfGpuAreNotOffered) {
+  const auto offered = [](const GpuConfig& gpu, std::string_view start) {
+    std::size_t count = 0;
+    for (const Engine engine : {Engine::roofline, Engine::queue})
+      for (const Sensitivity& s : sensitivities(busy_trace(), gpu, engine)) count += s.key.starts_with(start);
+    return count;
+  };
+  GpuConfig gpu = busy_gpu();
+  gpu.vliw_slots = gpu.vliw_fill_slots = 1.0;
+  gpu.tile_based = false;
+  EXPECT_EQ(offered(gpu, "vliw_"), 0u);
+  EXPECT_EQ(offered(gpu, "tile_"), 0u);
+  gpu.vliw_slots = 5.0;
+  gpu.vliw_fill_slots = 3.4;
+  EXPECT_EQ(offered(gpu, "vliw_"), 2u * 3u);
+  gpu.tile_based = true;
+  EXPECT_EQ(offered(gpu, "tile_"), 2u * 2u);
+}
+
+TEST(Sensitivity, TwiceAValueIsTimedWhereTheRulesAllowIt) {
+  GpuConfig gpu = busy_gpu();
+  gpu.vliw_slots = 5.0;
+  gpu.vliw_fill_slots = 3.4;
+  gpu.tex_128bit_ratio = 0.4;
+  gpu.tex_64bit_ratio = 0.5;
+  for (const Sensitivity& s : sensitivities(busy_trace(), gpu, Engine::queue)) {
+    const bool is_none = s.key == "vliw_fill_slots" || s.key == "tex_128bit_ratio";
+    const bool is_gpu = s.key == "core_clock_mhz" || s.key == "tex_64bit_ratio";
+    if (is_none || is_gpu) {
+      EXPECT_EQ(s.doubled_ns.has_value(), is_gpu) << s.key;
+    }
+  }
 }
 
 // Time is homogeneous: with every clock and bandwidth doubled and every fixed cost halved it halves.

@@ -25,6 +25,12 @@ std::string verdict_of(const std::string& budget, const Costs& costs = two_milli
   return std::string(verdict(costs, parse_budget(budget)));
 }
 
+TEST(Budget, LimitsAreNotNegative) {
+  EXPECT_THROW(parse_budget("aa_ms<=-1"), InputError);
+  EXPECT_THROW(parse_budget("frame_ms<=3, extra_mib<=-0.5"), InputError);
+  EXPECT_EQ(parse_budget("extra_mib<=0").front().at_most, 0.0);
+}
+
 TEST(Budget, EveryTechniqueIsWithinNoBudget) { EXPECT_EQ(verdict_of("frame_ms<=1000"), "ok"); }
 
 TEST(Budget, TimeIsOkWhereTheWholeIntervalIsWithinTheLimit) {

@@ -93,6 +93,8 @@ TEST_F(OptimizeTest, BandwidthBoundFrameNeedsTheBandwidthOfTheClosedForm) {
       only_dram, {}, prices("[dram_bandwidth_gb_s]\narea = 2\nlow = 50\nhigh = 500\nstep = 32\n"),
       {.time_ms = limit_ms, .front_points = 0});
   EXPECT_EQ(steps.best->values[0], 178.0) << "146 GB/s do not suffice";
+  EXPECT_FALSE(to_json(steps)["best"]["bounds"].contains("dram_bandwidth_gb_s"))
+      << "210 GB/s would be one more";
 }
 
 // Every GPU of the grid, timed: none that keeps the limit is smaller than the answer.
@@ -154,11 +156,13 @@ TEST_F(OptimizeTest, LimitThatNobodyKeepsIsMissedByTheNearest) {
   const Optimization slow = lab_.optimize(request(), {}, file, {.time_ms = 1e-4, .front_points = 0});
   EXPECT_FALSE(slow.met);
   EXPECT_EQ(slow.best->values[0], 100.0);
+  EXPECT_EQ(to_json(slow)["best"]["bounds"], (nlohmann::ordered_json{{"dram_bandwidth_gb_s", "upper"}}));
   EXPECT_EQ(slow.verdict, "over time");
   EXPECT_NE(answer_of(slow).find("No GPU within the bounds"), std::string::npos) << answer_of(slow);
   const Optimization large = lab_.optimize(request(), {}, file, {.area = 49.0, .front_points = 0});
   EXPECT_FALSE(large.met);
   EXPECT_EQ(large.best->values[0], 50.0);
+  EXPECT_NE(to_csv(optimized_keys(large)).find("on its lower bound"), std::string::npos);
   EXPECT_NE(answer_of(large).find("2.0 % more"), std::string::npos) << answer_of(large);
 }
 
