@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hwsim/gpu/gpu_keys.h"
+#include "hwsim/gpu/gpu_rules.h"
 #include "lab/base/base64.h"
 #include "lab/base/build_info.h"
 #include "lab/results/results.h"
@@ -78,6 +79,15 @@ Json intervals_json(const std::optional<cost_models::IntervalModel>& model) {
           {"covariance", model->covariance}};
 }
 
+/// The keys that mean nothing on a GPU of this kind: the page does not offer their derivatives.
+Json foreign_keys_json(const GpuConfig& config) {
+  GpuConfig gpu = config;
+  Json names = Json::array();
+  for (const Key& key : keys_of(static_cast<GpuValues<double>&>(gpu)))
+    if (!applies(key.info.name, gpu)) names.push_back(key.info.name);
+  return names;
+}
+
 Json gpu_json(const OfferedGpu& gpu) {
   Json json = {{"id", gpu.config.id},
                {"title", gpu.config.title},
@@ -85,6 +95,7 @@ Json gpu_json(const OfferedGpu& gpu) {
                {"functional_hash", functional_hash(gpu.config)},
                {"values", values_json(gpu.config)},
                {"functional", functional_json(gpu.config)},
+               {"foreign_keys", foreign_keys_json(gpu.config)},
                {"supports", Json::array()},
                {"fitted", Json::object()}};
   for (const Support support : gpu.supports) json["supports"].push_back(support_name(support));

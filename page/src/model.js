@@ -161,8 +161,9 @@ export class Model {
   // Percent of time for one percent of each real number, the largest first.
   elasticities(point, gpu, sets) {
     return this.#cached(JSON.stringify(["elasticities", point, gpu, sets]), () => {
-      const values = { ...this.data.gpus[gpu].values, ...sets };
-      const slopeKeys = this.data.keys.filter((key) => key.derivative).map((key) => key.name);
+      const { values: own, foreign_keys: foreign } = this.data.gpus[gpu];
+      const values = { ...own, ...sets };
+      const slopeKeys = this.data.keys.filter((key) => key.derivative && !foreign.includes(key.name)).map((key) => key.name);
       const { timeNs, slopes } = this.engine.time(this.traces[point], values, { slopeKeys });
       return Object.entries(slopes)
         .map(([key, slope]) => ({ key, value: values[key], elasticity: (slope * values[key]) / timeNs }))

@@ -72,7 +72,7 @@ TEST_F(RankTest, VerdictsFollowTheBudget) {
   };
   EXPECT_EQ(verdict(ms + 1, mib + 1, 0), "ok");
   EXPECT_EQ(verdict(ms + 1, mib - 0.01, 0), "over memory") << "`none` is within";
-  EXPECT_EQ(verdict(ms - 1, mib + 1, 4), "over time") << "not even `none` takes less than no time";
+  EXPECT_EQ(verdict(0.5 * ms, mib + 1, 0), "over time") << "`none` is within";
   EXPECT_EQ(rank("-t msaa4x --no-image --budget 'frame_ms<=0'", 4)["techniques"].size(), 2u);
 }
 
