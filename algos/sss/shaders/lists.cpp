@@ -95,15 +95,17 @@ struct ListShader {
     const F places = grid * grid;
     const PixelEdges<F> edges(t);
     PixelPlaces<F> at(grid);
+    // The depth goes first, for it spares hidden fragments the loops (docs/techniques/sss.md#lists).
+    const OpenSamples<I> samples = open_samples(s, u, t, s.flat_attr(kTriangle + kBias));
+    const auto open = I(0) < samples.open;
     auto covered = s.active() & (F(1.0f) < F(0.0f));
-    s.loop_each(kSampleBlock, to_int(places), s.valid(), [&](int, typename S::M left) HWY_ATTR {
+    s.loop_each(kSampleBlock, to_int(places), s.valid() & open, [&](int, typename S::M left) HWY_ATTR {
       covered = covered | (left & edges.cover(at.x(), at.y()));
       at.next();
     });
     const auto reached = s.active() & covered;
     s.discard(!reached);
     s.branch(kCriticalBlock, reached, [&]() HWY_ATTR {
-      const OpenSamples<I> samples = open_samples(s, u, t, s.flat_attr(kTriangle + kBias));
       const SeenPart<S> part = light_seen(s, u, t, edges, grid, samples, reached);
       const auto seen = reached & (part.weight > F(0.0f));
       const F share = F(1.0f) / max(part.weight, F(1e-3f));
