@@ -119,6 +119,30 @@ TEST(SssLists, LongListsAreCutAndCounted) {
             longer + whole[algos::SssCounters::sss_list_1_pixels]);
 }
 
+// "We manually discard these fragments": what a wall hides is dropped before its places are tested.
+TEST(SssLists, HiddenFragmentsSkipTheLoops) {
+  const auto lists_of = [](bool hidden) {
+    Mesh mesh;
+    add_cylinder(mesh, 0.0f, 0.04f, 10, 60, 0.02f);
+    if (hidden) {
+      const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+      for (const glm::vec2 corner :
+           {glm::vec2(-4, -3), glm::vec2(4, -3), glm::vec2(4, 3), glm::vec2(-4, 3)}) {
+        mesh.positions.push_back({corner, 1.0f});
+        mesh.normals.push_back({0.0f, 0.0f, 1.0f});
+      }
+      for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.indices.push_back(first + i);
+    }
+    return total(pass_named(
+        run(finish(empty_scene(), std::move(mesh)), "sss_ppll:mode=or,early_exit=off").trace, "sample"));
+  };
+  const PassCounters seen = lists_of(false), hidden = lists_of(true);
+  ASSERT_GT(seen.ps.invocations, 500u);
+  EXPECT_EQ(hidden.ps.invocations, seen.ps.invocations);
+  EXPECT_EQ(hidden.ps.discarded_invocations, hidden.ps.invocations);
+  EXPECT_LT(hidden.shader.alu_lane_ops, seen.shader.alu_lane_ops / 3);
+}
+
 // 5.4: where the covered parts add up to the pixel, the frame below shows nothing of itself.
 TEST(SssLists, FullListsLeaveNothingOfTheFrame) {
   Mesh mesh;
