@@ -27,6 +27,9 @@ TEST_P(BadInput, EndsInItsStatusAndMessageAndWritesNothing) {
               "schema = 1\nkind = \"gpu\"\nid = \"bad\"\nextends = \"gtx980\"\ncore_clock_mzh = 1000\n");
   place.write("bad_run.toml",
               "schema = 1\nkind = \"run\"\nscene = \"triangle.gltf\"\nwidht_px = 64\nheight_px = 0\n");
+  place.write("damaged.exr", std::string("\x76\x2f\x31\x01\2\0\0\0", 8));
+  std::string counted = kTriangleGltf;
+  place.write("count.gltf", counted.replace(counted.find("\"count\": 3"), 10, "\"count\": 9007199254740992"));
   place.write("price.toml",
               "schema = 1\nkind = \"prices\"\n[shader_cores]\narea = 1e308\nlow = 4\nhigh = 64\n");
   const std::string before = place.listing();
@@ -77,6 +80,9 @@ const Mistake kMistakes[] = {
     {"HelpOnNothing", "help Z999", 2, "U014", "Z999"},
     {"TwoBases", "run triangle.gltf -t msaa4x+deferred", 3, "T004", "each draws the whole frame"},
     {"NoImageInAnImageFile", "run bad.png -t fxaa", 3, "I006", "bad.png"},
+    {"DamagedExr", "run damaged.exr -t fxaa", 3, "I002", "export it again, as OpenEXR"},
+    {"CountThatNoDoubleHolds", "scene check count.gltf", 3, "S004",
+     "is 9007199254740992, must be a whole number from 0 to 9007199254740991"},
     {"MissingImage", "run missing.png -t fxaa", 3, "U011", "missing.png"},
     {"ImageIsNoScene", "run bad.png -t msaa4x+fxaa", 3, "T005", "filters of images: fxaa"},
     {"ImageHasItsSize", "run bad.png -t fxaa --resolution 64x48", 3, "U030", "--resolution"},
