@@ -48,8 +48,8 @@ class Reader {
  private:
   const std::string& text(std::string_view column) const { return file_.rows[row_][file_.column(column)]; }
 
-  void problem(const std::string& message) {
-    Diagnostic diagnostic{.code = "M003", .message = message};
+  void problem(const std::string& message, const std::string& help = {}) {
+    Diagnostic diagnostic{.code = "M003", .message = message, .help = help};
     diagnostic.place.file = file_.path;
     diagnostic.place.line = file_.lines[row_];
     diagnostic.place.column = 1;
@@ -62,6 +62,17 @@ class Reader {
     const std::optional<double> value = table_number(t);
     if (!value) problem("`" + t + "` is no number for " + std::string(column));
     return value.value_or(0.0);
+  }
+
+  /// The logarithm of the factor by which the value is likely off its start; 0: any value is as likely.
+  double prior() {
+    const std::string& t = text("prior_factor");
+    if (t == "none") return 0.0;
+    const std::optional<double> factor = table_number(t);
+    if (factor && *factor > 1.0) return std::log(*factor);
+    problem("`" + t + "` is no value of `prior_factor`",
+            "write a number above 1, the factor by which the value is likely off its start, or none");
+    return 0.0;
   }
 
   FittedParameter read() {
@@ -77,8 +88,7 @@ class Reader {
     p.start = number("start", value);
     p.low = number("low", interval[0]);
     p.high = number("high", interval[1]);
-    const double factor = number("prior_factor", 0.0);
-    p.prior_log_sd = factor > 1.0 ? std::log(factor) : 0.0;
+    p.prior_log_sd = prior();
     if (!(p.low > 0.0 && p.low <= p.start && p.start <= p.high && p.low < p.high))
       problem("`" + p.id() + "`: " + std::to_string(p.low) + " < " + std::to_string(p.start) + " < " +
               std::to_string(p.high) + " does not hold, or the GPU's file has no interval for it");

@@ -243,6 +243,37 @@ NumberRange range_of(const std::string& quantity) {
   return {1e-9, 1e12};
 }
 
+/// Values are taken as they are printed: a quantity has one unit, and one that is not known would be taken
+/// for milliseconds.
+constexpr std::pair<std::string_view, std::string_view> kUnits[] = {{"time_ms", "ms"},
+                                                                    {"fps", "fps"},
+                                                                    {"memory_mbytes", "MB"},
+                                                                    {"shaded_samples", "count"},
+                                                                    {"triangles", "count"},
+                                                                    {"speedup", "x"},
+                                                                    {"percent_change_time", "%"},
+                                                                    {"percent_change_memory", "%"},
+                                                                    {"percent_change_shaded", "%"}};
+
+void check_unit(const PublishedRow& row, const std::string& unit, const CsvFile& file, std::size_t at,
+                std::vector<Diagnostic>& problems) {
+  if (row.quantity == "claim") {  // a sentence's own
+    if (unit.empty())
+      problems.push_back(number_problem(unit, "unit", "what the document prints behind it", file, at));
+    return;
+  }
+  std::string known = "claim";
+  for (const auto& [quantity, its] : kUnits) {
+    known += ", " + std::string(quantity);
+    if (quantity != row.quantity) continue;
+    if (unit != its)
+      problems.push_back(number_problem(
+          unit, "unit", "`" + std::string(its) + "`, the unit of `" + row.quantity + "`", file, at));
+    return;
+  }
+  problems.push_back(number_problem(row.quantity, "quantity", "one of " + known, file, at));
+}
+
 bool is_resolution(std::string_view text) {
   const auto x = text.find('x');
   return x != std::string_view::npos && table_number(text.substr(0, x), kPixels) &&
@@ -261,6 +292,30 @@ void check_numbers(const PublishedRow& row, const CsvFile& file, std::size_t at,
   if (!row.surfaces.empty() && !table_number(row.surfaces, kRate))
     problems.push_back(
         number_problem(row.surfaces, "surfaces_or_aggregates", range_text(kRate) + ", or nothing", file, at));
+}
+
+PublishedRow read_row(const CsvFile& file, std::size_t at, std::vector<Diagnostic>& problems) {
+  const auto text = [&](std::string_view column) { return file.rows[at][file.column(column)]; };
+  PublishedRow row{fs::path(file.path).stem().string(),
+                   file.lines[at],
+                   text("document"),
+                   text("gpu"),
+                   text("resolution"),
+                   text("scene"),
+                   text("view"),
+                   text("technique"),
+                   text("msaa"),
+                   text("surfaces_or_aggregates"),
+                   text("lighting"),
+                   text("pass"),
+                   text("quantity"),
+                   text("value"),
+                   0.0,
+                   text("note")};
+  check_numbers(row, file, at, problems);
+  check_unit(row, text("unit"), file, at, problems);
+  row.value = table_number(row.printed).value_or(0.0);
+  return row;
 }
 
 std::vector<std::string> words(const std::string& text) {
@@ -334,28 +389,7 @@ std::vector<PublishedRow> load_published(const std::string& published_dir) {
   std::vector<Diagnostic> problems;
   for (const fs::path& path : files) {
     const CsvFile file = read_csv(path.string());
-    for (std::size_t i = 0; i < file.rows.size(); ++i) {
-      const auto text = [&](std::string_view column) { return file.rows[i][file.column(column)]; };
-      PublishedRow row{path.stem().string(),
-                       file.lines[i],
-                       text("document"),
-                       text("gpu"),
-                       text("resolution"),
-                       text("scene"),
-                       text("view"),
-                       text("technique"),
-                       text("msaa"),
-                       text("surfaces_or_aggregates"),
-                       text("lighting"),
-                       text("pass"),
-                       text("quantity"),
-                       text("value"),
-                       0.0,
-                       text("note")};
-      check_numbers(row, file, i, problems);
-      row.value = table_number(row.printed).value_or(0.0);
-      rows.push_back(std::move(row));
-    }
+    for (std::size_t i = 0; i < file.rows.size(); ++i) rows.push_back(read_row(file, i, problems));
   }
   if (!problems.empty()) throw InputError(problems);
   return rows;

@@ -67,7 +67,8 @@ struct Cell {
 };
 
 /// Rows of every table, in the order of files and lines. Throws InputError for damaged files, and M010 for
-/// values, resolutions and rates that are no numbers in their range ("NA" is read as 0).
+/// values, resolutions and rates that are no numbers in their range ("NA" is read as 0), quantities that are
+/// not known, and units that are not the quantity's.
 std::vector<PublishedRow> load_published(const std::string& published_dir);
 
 /// Uses and runs of all rows. Throws InputError M001 for mapping rules that match no row, M002 for a time

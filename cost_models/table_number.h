@@ -1,6 +1,6 @@
 #pragma once
-// Numbers in the tables that users may write: published values, their mapping, parameters, statements,
-// optima.
+// Numbers that users may write: in tables (published values, their mapping, parameters, statements, optima)
+// and on the command line.
 #include <optional>
 #include <string>
 #include <string_view>

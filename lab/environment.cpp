@@ -34,7 +34,8 @@ std::uint64_t bytes_of(const char* name, std::uint64_t otherwise) {
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, mib);
   if (error != std::errc() || stop != end)
-    fail("U017", std::string(name) + " is `" + text + "`, must be a whole number of MiB");
+    fail("U017", std::string(name) + " is `" + text + "`, must be a whole number of MiB", "",
+         std::string(name) + "=" + std::to_string(otherwise >> 20) + " is the default, 0 keeps none");
   return std::uint64_t{mib} << 20;
 }
 

@@ -111,6 +111,19 @@ std::string conversion_message(const std::string& text, const CLI::App& chosen) 
          (has_unit ? " of " + unit : "");
 }
 
+/// "--jobs: is `0`, must be ..." of a check, without the colon, and with the variable's name where it was no
+/// flag that had the value.
+std::string check_message(const std::string& text, const CLI::App& chosen,
+                          const std::vector<std::string>& words) {
+  const std::size_t colon = text.find(": ");
+  if (colon == std::string::npos) return text;
+  std::string name = text.substr(0, colon);
+  const CLI::Option* const option = chosen.get_option_no_throw(name);
+  const std::string variable = option ? option->get_envname() : "";
+  if (!variable.empty() && !is_typed(name, words)) name = variable;
+  return name + " " + text.substr(colon + 2);
+}
+
 }  // namespace
 
 void fail_parse(const CLI::ParseError& error, const CLI::App& app, const std::vector<std::string>& words) {
@@ -122,10 +135,13 @@ void fail_parse(const CLI::ParseError& error, const CLI::App& app, const std::ve
     if (!rest.empty()) fail_unknown_argument(chosen, rest.front());
   }
   if (dynamic_cast<const CLI::ConversionError*>(&error)) message = conversion_message(message, chosen);
-  message = as_typed(std::move(message), chosen, words);
+  if (dynamic_cast<const CLI::ValidationError*>(&error)) message = check_message(message, chosen, words);
+  const std::size_t line_end = std::min(message.find('\n'), message.size());  // a hint follows
+  const std::string hint = message.substr(std::min(line_end + 1, message.size()));
+  message = as_typed(message.substr(0, line_end), chosen, words);
   if (dynamic_cast<const CLI::RequiredError*>(&error)) fail_usage("U002", message, "", help);
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) fail_usage("U004", message, "", help);
-  fail_usage("U003", message, "", help);
+  fail_usage("U003", message, hint, help);
 }
 
 }  // namespace hwsim::cli

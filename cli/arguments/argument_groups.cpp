@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <sstream>
 #include <thread>
 
 #include "cli/arguments/argument_values.h"
@@ -21,18 +22,36 @@ void add_choice(CLI::App& app, const std::string& flag, std::string description,
   std::vector<std::string> words;
   for (const auto& [word, value] : choices) words.push_back(word);
   CLI::Option* option = app.add_option_function<std::string>(
-      flag,
-      [=](const std::string& text) {
-        if (const auto found = choices.find(text); found != choices.end()) return set(found->second);
-        fail_usage("U003", flag + " is `" + text + "`, must be " + CLI::detail::join(words, ", "),
-                   did_you_mean(text, words));
-      },
-      std::move(description));
+      flag, [=](const std::string& text) { set(choices.at(text)); }, std::move(description));
+  option->check([=](const std::string& text) {
+    if (choices.contains(text)) return std::string();
+    return "is `" + text + "`, must be " + CLI::detail::join(words, ", ") + "\n" + did_you_mean(text, words);
+  });
   option->type_name(CLI::detail::join(words, "|"));
   if (!environment.empty()) option->envname(environment);
 }
 
 }  // namespace
+
+CLI::Validator number_in(const cost_models::NumberRange& range, const std::string& unit) {
+  std::ostringstream described;
+  if (range.high < cost_models::NumberRange{}.high)
+    described << (range.whole ? "INT" : "FLOAT") << " in [" << range.low << " - " << range.high << "]";
+  return {[=](const std::string& text) { return number_complaint(text, range, unit); }, described.str()};
+}
+
+CLI::Validator whole_in(int low, int high) {
+  return number_in({static_cast<double>(low), static_cast<double>(high), true});
+}
+
+CLI::Option* add_number(CLI::App& app, const std::string& flag, std::optional<double>& target,
+                        std::string description, const CLI::Validator& range) {
+  return app
+      .add_option_function<std::string>(
+          flag, [&target](const std::string& text) { target = cost_models::table_number(text); },
+          std::move(description))
+      ->check(range);
+}
 
 CLI::Option* add_repeatable(CLI::App& app, const std::string& flag, std::vector<std::string>& target,
                             std::string description, const std::string& type) {
@@ -75,7 +94,7 @@ void add_common(CLI::App& app, CommonArguments& common) {
       [&common](When value) { common.progress = value; }, "HWSIM_PROGRESS");
   common.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   group->add_option("--jobs", common.jobs, "Threads; the results do not depend on it")
-      ->check(CLI::Range(1, 1024))
+      ->check(whole_in(1, 1024))
       ->type_name("N")
       ->envname("HWSIM_JOBS");
 }
@@ -123,16 +142,16 @@ void add_view_flags(CLI::App& app, ViewArguments& view) {
       ->needs(eye)
       ->type_name("DEGREES");
   app.add_option("--lights", view.point_lights, "Point lights added to those of the scene")
-      ->check(CLI::Range(0, 1024))
+      ->check(whole_in(0, 1024))
       ->type_name("N");
   app.add_flag("--no-shadows", view.no_shadows, "No shadow map");
   app.add_option("--anisotropy", view.anisotropy,
                  "Probes of a texture request at most, along the longer axis of its footprint; default 1")
-      ->check(CLI::Range(1, 16))
+      ->check(whole_in(1, 16))
       ->type_name("N");
-  app.add_option("--exposure", view.exposure,
-                 "Factor of the file's lights; default 1, or less where they are in photometric units")
-      ->check(CLI::Range(1e-12, 1e12))
+  add_number(app, "--exposure", view.exposure,
+             "Factor of the file's lights; default 1, or less where they are in photometric units",
+             number_in({1e-12, 1e12}))
       ->type_name("FACTOR");
   add_sets(app, view.sets);
 }
@@ -181,7 +200,7 @@ void add_reference_shadows(CLI::App& app, ViewArguments& view) {
 void add_reference_samples(CLI::App& app, RunArguments& run) {
   app.add_option("--reference", run.reference_samples,
                  "Compare with the ray-traced reference of so many samples a pixel; default 64")
-      ->check(CLI::Range(1, 65536))
+      ->check(whole_in(1, 65536))
       ->type_name("[SAMPLES]");
   add_reference_shadows(app, run.view);
 }
@@ -204,15 +223,14 @@ void add_optimize_goal(CLI::App& app, OptimizeArguments& optimize) {
                  "Area, bounds and step of each key that may be chosen: a .toml file, or `example`")
       ->required()
       ->type_name("NAME|FILE");
-  app.add_option("--time-ms", optimize.goal.time_ms, "The smallest GPU whose slowest frame takes no longer")
-      ->check(CLI::Range(1e-6, 1e9))
+  add_number(app, "--time-ms", optimize.goal.time_ms, "The smallest GPU whose slowest frame takes no longer",
+             number_in({1e-6, 1e9}))
       ->type_name("MS");
-  app.add_option("--area", optimize.goal.area, "The fastest GPU with no more area")
-      ->check(CLI::Range(1e-6, 1e12))
+  add_number(app, "--area", optimize.goal.area, "The fastest GPU with no more area", number_in({1e-6, 1e12}))
       ->type_name("UNITS");
   app.add_option("--front", optimize.goal.front_points,
                  "Areas of the front of area and time; default 9, 0: none")
-      ->check(CLI::Range(0, 1000))
+      ->check(whole_in(0, 1000))
       ->type_name("N");
 }
 

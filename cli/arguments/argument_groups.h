@@ -5,9 +5,16 @@
 #include <vector>
 
 #include "cli/arguments/arguments.h"
+#include "cost_models/table_number.h"
 
 namespace hwsim::cli {
 
+/// Takes numbers of the range alone: CLI11's own range lets `nan` pass.
+CLI::Validator number_in(const cost_models::NumberRange& range, const std::string& unit = {});
+CLI::Validator whole_in(int low, int high);
+/// A flag whose value is such a number. Nothing else reads real numbers of flags.
+CLI::Option* add_number(CLI::App& app, const std::string& flag, std::optional<double>& target,
+                        std::string description, const CLI::Validator& range);
 /// A flag that may be given several times, with one value each time.
 CLI::Option* add_repeatable(CLI::App& app, const std::string& flag, std::vector<std::string>& target,
                             std::string description, const std::string& type);

@@ -28,4 +28,13 @@ FormatRequest parse_format(const std::string& text) {
   return request;
 }
 
+std::string number_complaint(const std::string& text, const cost_models::NumberRange& range,
+                             const std::string& unit) {
+  if (cost_models::table_number(text, range)) return "";
+  const cost_models::NumberRange any;
+  const bool bounded = range.low > any.low || range.high < any.high;
+  return "is `" + text + "`, must be " + (bounded ? cost_models::range_text(range) : "a plain number") +
+         (unit.empty() ? "" : " of " + unit);
+}
+
 }  // namespace hwsim::cli

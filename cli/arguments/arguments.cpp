@@ -200,7 +200,7 @@ void Parser::add_reference() {
   CLI::App& sub = add(app, "reference", kHelpReference, [this] { return Command(reference); });
   add_view(sub, reference.view, true);
   sub.add_option("--samples", reference.samples, "Samples a pixel; default 64")
-      ->check(CLI::Range(1, 65536))
+      ->check(whole_in(1, 65536))
       ->type_name("N");
   add_reference_shadows(sub, reference.view);
   add_out(sub, reference.out);
@@ -246,7 +246,9 @@ void Parser::add_gpu() {
       ->type_name("GPU");
   sub.add_option("--title", gpu_new.sheet.title, "Its name for people; default NAME")->type_name("TEXT");
   const auto number = [&](const std::string& flags, std::optional<double>& target, const std::string& text,
-                          const std::string& unit) { sub.add_option(flags, target, text)->type_name(unit); };
+                          const std::string& unit) {
+    add_number(sub, flags, target, text, number_in({}, unit == "N" ? "" : unit))->type_name(unit);
+  };
   number("--sms,--cus,--cores", gpu_new.sheet.cores, "SMs, compute units: what `shader_cores` counts", "N");
   number("--rops", gpu_new.sheet.rops, "Pixels that the ROPs write in a clock", "N");
   number("--tmus", gpu_new.sheet.tmus, "Bilinear probes in a clock", "N");
@@ -301,7 +303,7 @@ void Parser::add_cache() {
   });
   prune.add_flag("--all", cache.all, "Everything, however recent");
   prune.add_option("--older-than", cache.older_than_days, "Days since a file was written; default 30")
-      ->check(CLI::Range(0, 36500))
+      ->check(whole_in(0, 36500))
       ->type_name("DAYS");
   prune
       .add_option("--keep-mib", cache.keep_mib, "Remove what was used least recently, until so much is left")
@@ -318,7 +320,7 @@ void Parser::add_calibration() {
   };
   CLI::App& fitter = add(app, "fit", kHelpFit, [this] { return Command(fit); });
   fitter.add_option("--starts", fit.starts, "Starts: the declared one, the others random; default 10")
-      ->check(CLI::Range(1, 1000))
+      ->check(whole_in(1, 1000))
       ->type_name("N");
   add_out(fitter, fit.out);
   add_papers(fitter, fit);

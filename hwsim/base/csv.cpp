@@ -51,8 +51,9 @@ class Reader {
   int line_ = 1;
 };
 
-[[noreturn]] void fail(const std::string& code, const std::string& message, const std::string& path) {
-  Diagnostic problem{.code = code, .message = message};
+[[noreturn]] void fail(const std::string& code, const std::string& message, const std::string& path,
+                       const std::string& help = {}) {
+  Diagnostic problem{.code = code, .message = message, .help = help};
   problem.place.file = path;
   throw InputError(problem);
 }
@@ -87,6 +88,8 @@ CsvFile read_csv(const std::string& path) {
     fail("U011", "`" + path + "` is no file", path);  // a pipe would be waited for
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
+  if (in && in.peek() == std::ifstream::traits_type::eof() && !in.bad())  // `<<` of nothing fails, too
+    fail("U015", "`" + path + "` is empty", path, "its first line must name the columns");
   if (in) text << in.rdbuf();
   if (!in || !text) fail("U011", "`" + path + "` cannot be read", path);
   return parse_csv(text.str(), path);

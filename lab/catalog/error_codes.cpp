@@ -37,7 +37,8 @@ constexpr ErrorCode kCodes[] = {
     {"U013", "results exist",
      "Results are never overwritten unasked. --force replaces a folder that hwsim wrote, and no other."},
     {"U014", "no such help topic", "`hwsim help` takes the code of a message or the name of a command."},
-    {"U015", "damaged CSV", "Every record of a CSV file must have as many fields as its header."},
+    {"U015", "damaged CSV",
+     "Every record of a CSV file must have as many fields as its header, which is the first line."},
     {"U016", "unknown name", "`hwsim show` takes the name of a GPU, scene, technique, counter or table."},
     {"U030", "no meaning for an image",
      "An image file in place of a scene has its own size, and neither camera nor lights; it is filtered as "
@@ -199,13 +200,14 @@ constexpr ErrorCode kCodes[] = {
 
     {"M010", "number of a published table",
      "A value, resolution or rate of configs/published, or a number of its mapping, is no finite number in "
-     "its "
-     "range. Times and counts are positive, percentages above -100; NA says that the document prints none."},
+     "its range, or a unit is not that of its quantity. Times and counts are positive, percentages above "
+     "-100; NA says that the document prints none. A time is in ms, never in s."},
 
     {"M003", "parameter of the fit",
      "configs/calibration/parameters.csv declares scope, name, start, range and prior of each number that "
-     "the "
-     "fit may move. \"file\" takes start or range from the GPU's own file."},
+     "the fit may move. \"file\" takes start or range from the GPU's own file; a prior is a factor above 1, "
+     "or "
+     "\"none\"."},
     {"M004", "too many parameters of a GPU",
      "The derivatives of one GPU are computed side by side, 12 at a time."},
     {"M005", "too many parameters", "The fit takes at most one parameter for four fitted values."},

@@ -21,6 +21,8 @@ constexpr std::string_view kHelp =
     "step, "
     "scales";
 
+constexpr double kMostPrice = 1e12;  // also --area's; a sum of areas stays finite
+
 /// The slots of a copy of a GPU's numbers.
 const Key* real_key(const std::vector<Key>& keys, const std::string& name) {
   const Key* key = find_key(keys, name);
@@ -93,8 +95,11 @@ class PriceReader {
     const auto* whole = entry.value ? std::get_if<std::int64_t>(&*entry.value) : nullptr;
     if (!real && !whole) return complain("C013", "`" + entry.path + "` must be a number", entry.value_place);
     target = real ? *real : static_cast<double>(*whole);
-    if (!std::isfinite(target) || target < 0.0)
-      complain("C014", "`" + entry.path + "` must be a number from 0 on", entry.value_place);
+    if (!(target >= 0.0 && target <= kMostPrice))
+      complain(
+          "C014",
+          fmt::format("`{}` is {}, must be a number from 0 to {:g}", entry.path, exact(target), kMostPrice),
+          entry.value_place);
   }
 
   PricedKey& find(const std::string& name) {

@@ -111,7 +111,7 @@ class RuleChecker {
   }
 
   void check_count(json& value, const std::string& path) {
-    expect(is_count(value), path, "a whole number from 0 up", value);
+    expect(is_count(value), path, "a whole number from 0 to 9007199254740991", value);
     if (value.is_number_float() && is_count(value)) value = static_cast<std::uint64_t>(value.get<double>());
   }
 

@@ -58,15 +58,19 @@ struct FloatTarget {
   }
 };
 
-[[noreturn]] void report(int status, const std::string& reason, const std::string& what) {
+// Who exports a reference or a map of radiance as PNG or JPEG loses its range.
+[[noreturn]] void report(int status, const std::string& reason, const std::string& what, ImageFormat format) {
+  const bool exr = format == ImageFormat::exr;
   const std::string tail = reason.empty() ? std::string() : ": " + reason;
   if (status == kHwsimImageNoMemory) throw std::bad_alloc();
   if (status == kHwsimImageTooLarge)
     fail("I003", "the image is too large" + tail, what,
          "reduce it to at most " + std::to_string(kHwsimImageMaxExtentPx) + " pixels a side");
   if (status == kHwsimImageDamaged)
-    fail("I002", "the image is damaged" + tail, what, "export it again, as PNG or JPEG");
-  fail("I004", "the image cannot be read" + tail, what, "convert it to an 8-bit PNG");
+    fail("I002", "the image is damaged" + tail, what,
+         exr ? "export it again, as OpenEXR" : "export it again, as PNG or JPEG");
+  fail("I004", "the image cannot be read" + tail, what,
+       exr ? "save it as OpenEXR of half or float channels" : "convert it to an 8-bit PNG");
 }
 
 void check_format(std::span<const std::uint8_t> bytes, const std::string& what, bool exr_allowed) {
@@ -75,19 +79,20 @@ void check_format(std::span<const std::uint8_t> bytes, const std::string& what, 
     fail("I006", bytes.empty() ? "the image is empty" : "unknown image format", what,
          exr_allowed ? "PNG, JPEG and OpenEXR are read" : "PNG and JPEG are read");
   if (format == ImageFormat::png && !png_is_intact(bytes))
-    report(kHwsimImageDamaged, "bytes are missing or changed", what);
+    report(kHwsimImageDamaged, "bytes are missing or changed", what, format);
   if (format == ImageFormat::jpeg && !jpeg_is_complete(bytes))
-    report(kHwsimImageDamaged, "its end is missing", what);
+    report(kHwsimImageDamaged, "its end is missing", what, format);
   if (format == ImageFormat::exr) return;
   const ImageSize size = image_size(bytes);
-  if (size.width == 0 || size.height == 0) report(kHwsimImageDamaged, "its size is zero", what);
+  if (size.width == 0 || size.height == 0) report(kHwsimImageDamaged, "its size is zero", what, format);
   if (size.width > kHwsimImageMaxExtentPx || size.height > kHwsimImageMaxExtentPx)
     report(kHwsimImageTooLarge,
-           "it is " + std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels", what);
+           "it is " + std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels", what,
+           format);
   if (format == ImageFormat::png && !png_data_fits(bytes))
-    report(kHwsimImageDamaged, "it holds more than its size can use", what);
+    report(kHwsimImageDamaged, "it holds more than its size can use", what, format);
   if (format == ImageFormat::jpeg && jpeg_scans(bytes) > kMostScans)
-    report(kHwsimImageDamaged, "it has more than " + std::to_string(kMostScans) + " scans", what);
+    report(kHwsimImageDamaged, "it has more than " + std::to_string(kMostScans) + " scans", what, format);
 }
 
 template <class Target>
@@ -96,7 +101,7 @@ Target decode(std::span<const std::uint8_t> bytes, const std::string& what, bool
   std::array<char, 512> error{};
   const HwsimImageOutput output{&target, &allocate_in<Target>, error.data(), error.size()};
   const int status = image_module().decode(bytes.data(), bytes.size(), as_float ? 1 : 0, &output);
-  if (status != kHwsimImageOk) report(status, error.data(), what);
+  if (status != kHwsimImageOk) report(status, error.data(), what, image_format(bytes));
   return target;
 }
 

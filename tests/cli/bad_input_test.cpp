@@ -27,6 +27,11 @@ TEST_P(BadInput, EndsInItsStatusAndMessageAndWritesNothing) {
               "schema = 1\nkind = \"gpu\"\nid = \"bad\"\nextends = \"gtx980\"\ncore_clock_mzh = 1000\n");
   place.write("bad_run.toml",
               "schema = 1\nkind = \"run\"\nscene = \"triangle.gltf\"\nwidht_px = 64\nheight_px = 0\n");
+  place.write("damaged.exr", std::string("\x76\x2f\x31\x01\2\0\0\0", 8));
+  std::string counted = kTriangleGltf;
+  place.write("count.gltf", counted.replace(counted.find("\"count\": 3"), 10, "\"count\": 9007199254740992"));
+  place.write("price.toml",
+              "schema = 1\nkind = \"prices\"\n[shader_cores]\narea = 1e308\nlow = 4\nhigh = 64\n");
   const std::string before = place.listing();
   const Outcome outcome = place.hwsim(GetParam().arguments);
   EXPECT_EQ(outcome.status, GetParam().status) << outcome.err;
@@ -54,11 +59,30 @@ const Mistake kMistakes[] = {
     {"BadLights", "run triangle.gltf --lights 5000", 2, "U003", "--lights"},
     {"BadAnisotropy", "run triangle.gltf --anisotropy 17", 2, "U003", "--anisotropy"},
     {"BadAnisotropySet", "run triangle.gltf --set scene.anisotropy=0", 3, "C014", "between 1.0 and 16.0"},
+    {"ExposureNan", "run triangle.gltf --exposure nan", 2, "U003",
+     "--exposure is `nan`, must be a number from 1e-12 to 1e+12"},
+    {"ExposureMinusNan", "run triangle.gltf --exposure=-nan", 2, "U003", "--exposure is `-nan`"},
+    {"ExposureNanWithPayload", "run triangle.gltf --exposure 'nan(1)'", 2, "U003", "--exposure is `nan(1)`"},
+    {"ExposureInf", "run triangle.gltf --exposure inf", 2, "U003", "--exposure is `inf`, must be"},
+    {"ExposureZero", "run triangle.gltf --exposure 0", 2, "U003", "from 1e-12 to 1e+12"},
+    {"TimeNan", "optimize triangle.gltf --prices example --time-ms nan", 2, "U003",
+     "--time-ms is `nan`, must be a number from 1e-06 to 1e+09"},
+    {"AreaNan", "optimize triangle.gltf --prices example --area nan", 2, "U003",
+     "--area is `nan`, must be a number from 1e-06 to 1e+12"},
+    {"AreaOfAPrice", "optimize triangle.gltf --prices price.toml --time-ms 1", 3, "C014",
+     "`shader_cores.area` is 1e+308, must be a number from 0 to 1e+12"},
+    {"ClockNan", "gpu new x --like gtx980 --clock nan", 2, "U003",
+     "--clock is `nan`, must be a plain number of MHz"},
+    {"LightsNan", "run triangle.gltf --lights nan", 2, "U003",
+     "--lights is `nan`, must be a whole number from 0 to 1024"},
     {"BadSamples", "run triangle.gltf --reference 0", 2, "U003", "--reference"},
     {"ListNothing", "list gpu", 2, "U003", "did you mean `gpus`"},
     {"HelpOnNothing", "help Z999", 2, "U014", "Z999"},
     {"TwoBases", "run triangle.gltf -t msaa4x+deferred", 3, "T004", "each draws the whole frame"},
     {"NoImageInAnImageFile", "run bad.png -t fxaa", 3, "I006", "bad.png"},
+    {"DamagedExr", "run damaged.exr -t fxaa", 3, "I002", "export it again, as OpenEXR"},
+    {"CountThatNoDoubleHolds", "scene check count.gltf", 3, "S004",
+     "is 9007199254740992, must be a whole number from 0 to 9007199254740991"},
     {"MissingImage", "run missing.png -t fxaa", 3, "U011", "missing.png"},
     {"ImageIsNoScene", "run bad.png -t msaa4x+fxaa", 3, "T005", "filters of images: fxaa"},
     {"ImageHasItsSize", "run bad.png -t fxaa --resolution 64x48", 3, "U030", "--resolution"},
@@ -134,6 +158,22 @@ TEST(BadInputAtOnce, AllMistakesOfTheCommandLineAreReportedTogether) {
   for (const char* code : {"T001", "C016", "U006"})
     EXPECT_NE(outcome.err.find(code), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("errors, nothing was run"), std::string::npos) << outcome.err;
+}
+
+// A flag that nobody typed was blamed, and another variable proposed.
+TEST(BadEnvironment, TheVariableIsNamedAndWhatItTakes) {
+  const Workplace place;
+  for (const auto& [variable, words] :
+       {std::pair{"HWSIM_JOBS=nan", "HWSIM_JOBS is `nan`, must be a whole number from 1 to 1024"},
+        std::pair{"HWSIM_COLOR=purple", "HWSIM_COLOR is `purple`, must be always, auto, never"},
+        std::pair{"HWSIM_PROGRESS=neve", "did you mean `never`?"},
+        std::pair{"HWSIM_CACHE_MIB=nan", "help: HWSIM_CACHE_MIB="},
+        std::pair{"HWSIM_SHARED_PASSES_MIB=nan", "help: HWSIM_SHARED_PASSES_MIB=64"}}) {
+    const Outcome outcome = place.hwsim("list gpus", variable);
+    EXPECT_NE(outcome.status, 0) << variable;
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << variable << ": " << outcome.err;
+    EXPECT_EQ(outcome.err.find("--jobs is"), std::string::npos) << outcome.err;
+  }
 }
 
 TEST(BadConfigFolder, IsNamed) {

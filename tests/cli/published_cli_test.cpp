@@ -70,6 +70,17 @@ TEST(Published, ADryRunRefusesAnUnknownGpuAsTheRunDoes) {
   }
 }
 
+TEST(Published, AnEmptyTableIsCalledEmpty) {
+  const Workplace place;
+  std::filesystem::copy(hwsim::test::source_dir() + "/configs", place / "configs",
+                        std::filesystem::copy_options::recursive);
+  place.write("configs/published/axaa_table1.csv", "");
+  const Outcome outcome = place.hwsim("reproduce axaa --dry-run", "HWSIM_CONFIG_DIR=configs");
+  EXPECT_EQ(outcome.status, 3);
+  for (const char* words : {"error[U015]", "axaa_table1.csv` is empty", "help: its first line must name"})
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+}
+
 TEST(Published, MappingMistakesAreReportedWithTheirLine) {
   const Workplace place;
   std::filesystem::copy(hwsim::test::source_dir() + "/configs", place / "configs",

@@ -1,5 +1,7 @@
 // The published tables as data: every row is there, has a use with a reason, and stands for a run.
 #include "cost_models/published.h"
+
+#include "cost_models/parameters.h"
 #include "hwsim/base/diagnostics.h"
 #include "support/places.h"
 
@@ -46,25 +48,70 @@ TEST(Published, EveryRowIsLoaded) {
   EXPECT_EQ(numbers, 317);
 }
 
-/// The message that a copy of the tables ends in, of which one value was changed; empty where it is read.
-std::string message_for(const std::string& value) {
+/// "M010 message; help" that reading ends in, from a table's third line; empty where it is read.
+template <class Read>
+std::string problem_of(const Read& read) {
+  try {
+    read();
+  } catch (const InputError& error) {
+    const Diagnostic& problem = error.diagnostics().front();
+    EXPECT_EQ(problem.place.line, 3);
+    EXPECT_FALSE(problem.help.empty());
+    return problem.code + " " + problem.message + "; " + problem.help;
+  }
+  return "";
+}
+
+/// What a table ends in whose second row has these.
+std::string problem_with(const std::string& quantity, const std::string& value, const std::string& unit) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(testing::TempDir()) / "hwsim_published_numbers";
   fs::remove_all(folder);
   fs::create_directories(folder);
   std::ofstream(folder / "t.csv")
       << "document,gpu,resolution,scene,view,technique,msaa,surfaces_or_aggregates,lighting,pass,quantity,"
-         "value,note\nD,G,1280x720,S,V,T,8,,,frame,time_ms,1.5,\nD,G,1280x720,S,V,T,8,,,frame,time_ms," +
-             value + ",\n";
-  try {
-    load_published(folder.string());
-  } catch (const InputError& error) {
-    const Diagnostic& problem = error.diagnostics().front();
-    EXPECT_EQ(problem.place.line, 3);
-    EXPECT_FALSE(problem.help.empty());
-    return problem.code + " " + problem.message;
-  }
-  return "";
+         "value,unit,note\nD,G,1280x720,S,V,T,8,,,frame,time_ms,1.5,ms,\nD,G,1280x720,S,V,T,8,,,frame," +
+             quantity + "," + value + "," + unit + ",\n";
+  return problem_of([&] { load_published(folder.string()); });
+}
+
+std::string message_for(const std::string& value) {
+  const std::string problem = problem_with("time_ms", value, "ms");
+  return problem.substr(0, problem.find(';'));
+}
+
+// 10.6 s were fitted as 10.6 ms.
+TEST(Published, UnitThatIsNotItsQuantitysIsRefusedWithItsLine) {
+  EXPECT_EQ(problem_with("time_ms", "10.6", "s"),
+            "M010 `s` is no value of `unit`; write `ms`, the unit of `time_ms`");
+  for (const char* unit : {"", "us", "MS", " ms", "ms ", "%", "count"})
+    EXPECT_NE(problem_with("time_ms", "NA", unit), "") << unit;
+  for (const auto& [quantity, unit] :
+       {std::pair{"fps", "ms"}, std::pair{"memory_mbytes", "GB"}, std::pair{"shaded_samples", ""},
+        std::pair{"speedup", "%"}, std::pair{"percent_change_time", "ms"}, std::pair{"claim", ""}})
+    EXPECT_NE(problem_with(quantity, "2", unit), "") << quantity;
+  EXPECT_EQ(problem_with("claim", "2", "lights"), "");
+  EXPECT_EQ(problem_with("speedup", "2", "x"), "");
+  EXPECT_NE(problem_with("time_s", "2", "s").find("`time_s` is no value of `quantity`; write one of claim"),
+            std::string::npos);
+}
+
+// 0 was read as no prior, and so were 1 and -3.
+TEST(Published, PriorOfAParameterIsAFactorAboveOneOrNone) {
+  const std::string file = (std::filesystem::path(testing::TempDir()) / "hwsim_prior_factor.csv").string();
+  const auto prior = [&](const std::string& factor) {
+    std::ofstream(file) << "scope,member,name,start,low,high,prior_factor,meaning\n"
+                           "scene,a,geometry_load,1,0.5,2,1.5,\nscene,b,geometry_load,1,0.5,2," +
+                               factor + ",\n";
+    return load_parameters(file, {}).at(1).prior_log_sd;
+  };
+  for (const char* factor : {"0", "1", "-3", "nan", "inf", "", "file", "None", "2x"})
+    EXPECT_EQ(problem_of([&] { prior(factor); }),
+              "M003 `" + std::string(factor) +
+                  "` is no value of `prior_factor`; write a number above 1, the " +
+                  "factor by which the value is likely off its start, or none");
+  EXPECT_EQ(prior("none"), 0.0);
+  EXPECT_EQ(prior("1.5"), std::log(1.5));
 }
 
 TEST(Published, ValueThatIsNoFiniteNumberInItsRangeIsRefusedWithItsLine) {
