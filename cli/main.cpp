@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "cli/arguments/arguments.h"
+#include "cli/arguments/repeats.h"
 #include "cli/commands/commands.h"
 #include "cli/terminal/answer.h"
 #include "lab/base/files.h"
@@ -126,11 +127,12 @@ void check_places(const CommonArguments& common) {
 ExitStatus run_program(int argc, char** argv) {
   Context context{{argv, argv + argc}, inspect_terminal({}), Log({}, inspect_terminal({}))};
   try {
-    const Command command = parse_arguments(argc, argv);
+    Command command = parse_arguments(argc, argv);
     const CommonArguments common = common_of(command);
     context.terminal = inspect_terminal(common);
     context.log = Log(common, context.terminal);
     check_places(common);
+    drop_repeats(command, context.log);
     return dispatch(command, context);
   } catch (const InputError& error) {
     return report(error, context.log);
