@@ -13,8 +13,10 @@
 #include <system_error>
 
 #include "cli/arguments/arguments.h"
+#include "cli/arguments/repeats.h"
 #include "cli/commands/commands.h"
 #include "cli/terminal/answer.h"
+#include "lab/base/files.h"
 #include "lab/base/messages.h"
 #include "lab/point/simulate.h"
 #include "pipeline/base/file_io.h"
@@ -98,8 +100,7 @@ void check_places(const CommonArguments& common) {
     const std::filesystem::path file = format.file, folder = file.parent_path();
     if (!file.empty() && !folder.empty() && !std::filesystem::is_directory(folder, error))
       fail("U010", "cannot write `" + format.file + "`: there is no folder `" + folder.string() + "`");
-    if (!file.empty() && std::filesystem::is_directory(file, error))
-      fail("U010", "cannot write `" + format.file + "`: it is a folder");
+    if (!file.empty()) check_answer_place(format.file);
     if (!file.empty() && !names.insert(format.file).second)
       fail_usage("U003", "two answers go to the file `" + format.file + "`", "", "a file for each --format");
     if (!file.empty() && !common.force && std::filesystem::is_regular_file(file, error))
@@ -126,11 +127,12 @@ void check_places(const CommonArguments& common) {
 ExitStatus run_program(int argc, char** argv) {
   Context context{{argv, argv + argc}, inspect_terminal({}), Log({}, inspect_terminal({}))};
   try {
-    const Command command = parse_arguments(argc, argv);
+    Command command = parse_arguments(argc, argv);
     const CommonArguments common = common_of(command);
     context.terminal = inspect_terminal(common);
     context.log = Log(common, context.terminal);
     check_places(common);
+    drop_repeats(command, context.log);
     return dispatch(command, context);
   } catch (const InputError& error) {
     return report(error, context.log);

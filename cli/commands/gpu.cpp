@@ -46,6 +46,7 @@ ExitStatus gpu_new(const GpuNewArguments& options, Context& context) {
   if (has_extension(options.like, ".toml")) made.like = fs::absolute(options.like).string();
   const std::string path = options.out.empty() ? sheet.id + ".toml" : options.out;
   std::error_code error;
+  place_of_file(path);
   if (!options.force && fs::exists(fs::symlink_status(path, error)))
     fail("U013", "`" + path + "` exists and is not overwritten", "",
          "another --out, or --force to replace it");

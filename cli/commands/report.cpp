@@ -5,6 +5,7 @@
 #include "cli/commands/commands.h"
 #include "cli/commands/lab_options.h"
 #include "cli/commands/report_file.h"
+#include "lab/base/files.h"
 #include "lab/base/messages.h"
 #include "lab/base/text.h"
 
@@ -27,7 +28,7 @@ void check_report_place(const std::string& file, bool force) {
   const fs::path folder = fs::path(file).parent_path();
   if (!folder.empty() && !fs::is_directory(folder, error))
     fail("U010", "cannot write `" + file + "`: there is no folder `" + folder.string() + "`");
-  if (fs::is_directory(file, error)) fail("U010", "cannot write `" + file + "`: it is a folder");
+  place_of_file(file);
   if (!force && fs::exists(file, error))
     fail("U013", "`" + file + "` is there already", "", "--force replaces it, another name keeps it");
 }

@@ -93,7 +93,8 @@ std::string shares(const std::vector<PlannedWork>& works, std::size_t shards) {
 
 ExitStatus write_plan(const SweepArguments& options, const SweepPlan& plan, std::size_t shards, Lab& lab) {
   std::error_code error;
-  if (!options.out.force && std::filesystem::exists(options.plan, error))
+  check_answer_place(options.plan);
+  if (!options.out.force && std::filesystem::is_regular_file(options.plan, error))
     fail("U013", "`" + options.plan + "` exists and is not overwritten", "",
          "another file, or --force to replace it");
   const std::vector<PlannedWork> works = lab.sweep_works(plan, shards);

@@ -7,11 +7,19 @@
 
 namespace hwsim::lab {
 
-/// Written beside the target and renamed, so that a file that exists is complete. Throws InputError U010.
+/// The file that is made or replaced by who writes to `path`: itself, or what it leads to as a link. Throws
+/// InputError U010 where something is there that is no file: a folder, a pipe, a device.
+std::string place_of_file(const std::string& path);
+
+/// Throws what `place_of_file` throws where `write_answer` would, before the work.
+void check_answer_place(const std::string& path);
+
+/// Written beside the file's place and renamed, so that a file that exists is complete. Throws InputError
+/// U010.
 void write_file(const std::string& path, std::string_view text);
 
-/// Writes where somebody asked for it: a link's target is replaced, a pipe or a device gets the text itself.
-/// Throws InputError U010.
+/// Writes where somebody asked for it: a pipe that is read or a device of characters gets the text itself.
+/// Throws InputError U010, also for a pipe that nobody reads.
 void write_answer(const std::string& path, std::string_view text);
 
 /// Throws InputError U011 when it cannot be read.

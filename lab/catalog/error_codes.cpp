@@ -40,6 +40,12 @@ constexpr ErrorCode kCodes[] = {
     {"U015", "damaged CSV",
      "Every record of a CSV file must have as many fields as its header, which is the first line."},
     {"U016", "unknown name", "`hwsim show` takes the name of a GPU, scene, technique, counter or table."},
+    {"U024", "named more than once",
+     "A technique, a GPU, a what-if, a value of --vary, a paper or an input of a report stands twice in a "
+     "list. "
+     "It is taken once, at its first place: the second would give the same numbers. --zip keeps its values, "
+     "as "
+     "they are pairs."},
     {"U030", "no meaning for an image",
      "An image file in place of a scene has its own size, and neither camera nor lights; it is filtered as "
      "it "
@@ -59,9 +65,9 @@ constexpr ErrorCode kCodes[] = {
      "the database of a sweep and the JSON of `compare` and `rank`."},
     {"U021", "database of a sweep",
      "The SQLite database cannot be opened or written, is damaged, or was not written by `hwsim sweep` of "
-     "this "
-     "version: such a database carries the application id 0x68775357. A file without it is never written "
-     "to."},
+     "this version: such a database carries the application id 0x68775357, and holds hwsim's tables alone. A "
+     "file of which that is not true is never written to, with --force neither: it may hold what somebody "
+     "else put there (a table, a view, an index, statistics of ANALYZE)."},
     {"U022", "bad budget",
      "--budget is a list of quantity<=number; quantities are aa_ms, frame_ms, extra_mib, memory_mib, "
      "dram_mb."},

@@ -120,6 +120,7 @@ constexpr std::array kRemedies = {
     Remedy{"U021", "a database that `hwsim sweep` wrote, or a new name"},
     Remedy{"U022", "--budget 'aa_ms<=1.5, extra_mib<=192'"},
     Remedy{"U023", "give fewer folders, or run with fewer techniques and GPUs"},
+    Remedy{"U024", "name each once"},
     Remedy{"U030", "leave the flag out, or give a scene"},
     Remedy{"C026", "begin from configs/prices/example.toml"},
     Remedy{"C027", "write the number in the unit that the key ends in"},

@@ -70,14 +70,31 @@ ReportInput read_sweep(const std::string& path) {
   return input;
 }
 
+[[noreturn]] void damaged_manifest(const fs::path& manifest, const std::string& what) {
+  fail("U020", "`" + manifest.string() + "` is damaged: " + what, "",
+       "the folder as `hwsim run` wrote it, or without its manifest.json");
+}
+
+/// The techniques of a manifest's points.
+std::vector<std::string> asked_techniques(const fs::path& manifest) {
+  const Json json = Json::parse(read_file(manifest.string()), nullptr, false);
+  if (!json.is_object()) damaged_manifest(manifest, "it is no JSON object");
+  const Json points = json.value("points", Json::array());
+  if (!points.is_array()) damaged_manifest(manifest, "`points` is no list");
+  std::vector<std::string> asked;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto technique = points[i].find("technique");  // an end, too, where it is no object
+    if (technique == points[i].end() || !technique->is_string())
+      damaged_manifest(manifest, "`points[" + std::to_string(i) + "].technique` is no text");
+    asked.push_back(technique->get<std::string>());
+  }
+  return asked;
+}
+
 /// Techniques in the order in which they were asked for, where a manifest says it.
 void order_as_asked(std::vector<Request>& requests, const fs::path& manifest) {
   if (!is_there(manifest)) return;
-  const Json json = Json::parse(read_file(manifest.string()), nullptr, false);
-  std::vector<std::string> asked;
-  if (json.is_object() && json.contains("points") && json["points"].is_array())
-    for (const Json& point : json["points"])
-      if (point.is_object()) asked.push_back(point.value("technique", ""));
+  const std::vector<std::string> asked = asked_techniques(manifest);
   std::ranges::stable_sort(requests, std::less{}, [&](const Request& request) {
     return std::ranges::find(asked, request.techniques.front()) - asked.begin();
   });

@@ -73,6 +73,8 @@ sqlite3* open_to_look(const std::string& path) {
 
 sqlite3* open(const std::string& path, Database::Mode mode) {
   if (mode == Database::Mode::look) return open_to_look(path);
+  if (mode == Database::Mode::look_as_it_lies)
+    return open(immutable_uri(path), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
   return open(path, SQLITE_OPEN_READWRITE | (mode == Database::Mode::create ? SQLITE_OPEN_CREATE : 0));
 }
 

@@ -17,7 +17,8 @@ class Database {
   enum class Mode {
     create,  ///< the file is made when there is none
     write,
-    look  ///< the file and its folder may be read-only; nothing is written
+    look,            ///< the file and its folder may be read-only; nothing is written
+    look_as_it_lies  ///< the same of the file alone, without what lies beside it
   };
   /// `shown`: the name in messages, where it is another one.
   Database(const std::string& path, Mode mode, const std::string& shown = {});

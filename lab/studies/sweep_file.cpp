@@ -10,9 +10,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <thread>
-#include <vector>
 
 #include "lab/base/messages.h"
 #include "pipeline/base/file_io.h"
@@ -45,6 +45,10 @@ CREATE TABLE pass (
   fail("U021", message, "", "another file: this one stays as it was");
 }
 
+std::string other_version(const std::string& path, std::int64_t version) {
+  return fmt::format("`{}` is a sweep of version {}, this program reads {}", path, version, kSchemaVersion);
+}
+
 /// The schema's version in the file's header (https://www.sqlite.org/fileformat.html), or none where the file
 /// is no sweep.
 std::optional<std::uint32_t> version_in_header(const std::string& path) {
@@ -64,26 +68,38 @@ std::optional<std::uint32_t> version_in_header(const std::string& path) {
   return is_sweep ? std::optional(word(kUserVersionAt)) : std::nullopt;
 }
 
-/// What the database consists of, as SQLite keeps it: texts of CREATE.
-std::vector<std::string> parts_of(Database& database) {
-  std::vector<std::string> parts;
-  Database::Statement select(database, "SELECT type, name, sql FROM sqlite_master ORDER BY type, name");
-  while (select.step()) parts.push_back(select.text(0) + " " + select.text(1) + " " + select.text(2));
+/// What the database consists of, as SQLite keeps it: the row of each part in its schema, by the part's name.
+std::map<std::string, std::string> parts_of(Database& database) {
+  std::map<std::string, std::string> parts;
+  Database::Statement select(database, "SELECT type, name, tbl_name, sql FROM sqlite_master");
+  while (select.step())
+    parts[select.text(0) + " `" + select.text(1) + "`"] += select.text(2) + " " + select.text(3);
   return parts;
 }
 
-/// The tables of a sweep and nothing else: neither triggers and views nor columns that compute themselves.
-bool is_made_as_here(Database& database) {
-  Database made(":memory:", Database::Mode::create);
-  made.execute(kSchema);
-  return parts_of(database) == parts_of(made);
+std::int64_t number_of(Database& database, const std::string& pragma) {
+  Database::Statement select(database, "PRAGMA " + pragma);
+  return select.step() ? select.integer(0) : 0;
 }
 
-bool has_tables(Database& database) {
-  Database::Statement tables(database,
-                             "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN "
-                             "('sweep', 'point', 'pass')");
-  return tables.step() && tables.integer(0) == 3;
+/// The tables of a sweep and nothing else: no table, view, index, trigger or column of somebody else's, and
+/// no statistics of ANALYZE, which would go with the tables. The numbers of the header are asked for once
+/// more: a log beside the file may hold others than the file's first bytes.
+void require_own_schema(Database& database, const std::string& path) {
+  Database made(":memory:", Database::Mode::create);
+  made.execute(kSchema);
+  const std::map<std::string, std::string> ours = parts_of(made), found = parts_of(database);
+  for (const auto& [part, text] : found)
+    if (const auto own = ours.find(part); own == ours.end() || own->second != text)
+      fail("U021",
+           fmt::format("`{}` is no database of `hwsim sweep`{}: {} is {}", path,
+                       own == ours.end() ? " alone" : "", part,
+                       own == ours.end() ? "not hwsim's" : "another one than hwsim makes"),
+           "", "another --db, or a copy without it: this file stays as it was");
+  if (found.size() != ours.size() || number_of(database, "application_id") != kApplicationId)
+    refuse("`" + path + "` is no database of `hwsim sweep`");
+  if (const std::int64_t version = number_of(database, "user_version"); version != kSchemaVersion)
+    refuse(other_version(path, version));
 }
 
 void write_schema(Database& database) {
@@ -143,12 +159,21 @@ void log_writes(Database& database) {
 }
 
 /// SQLite is not given the file before its header shows that it is a sweep.
-void require_header(const std::string& path, bool any_version) {
+void require_header(const std::string& path) {
   const std::optional<std::uint32_t> version = version_in_header(path);
   if (!version) refuse("`" + path + "` is no database of `hwsim sweep`");
-  if (!any_version && *version != kSchemaVersion)
-    refuse(
-        fmt::format("`{}` is a sweep of version {}, this program reads {}", path, *version, kSchemaVersion));
+  if (*version != kSchemaVersion) refuse(other_version(path, *version));
+}
+
+/// Reads the schema before the database is opened for writing. Who was killed while it changed the mode of
+/// the journal left one that only a writer can take back; the first page alone is in it, and the schema is
+/// read without it.
+void look_at_schema(const std::string& path) {
+  const std::string journal = path + "-journal";
+  std::error_code error;
+  const bool unfinished = fs::exists(journal, error);
+  Database database(path, unfinished ? Database::Mode::look_as_it_lies : Database::Mode::look);
+  require_own_schema(database, path);
 }
 
 }  // namespace
@@ -164,16 +189,18 @@ Database open_sweep(const std::string& path, SweepAccess access) {
   if (is_there && access == SweepAccess::create)
     fail("U013", "`" + path + "` exists and is not overwritten", "",
          "another --db, --resume to go on with it, or --force to replace it");
-  require_header(path, access == SweepAccess::replace);
+  require_header(path);
   const bool looks = access == SweepAccess::look;
+  if (!looks) look_at_schema(path);
   Database database(path, looks ? Database::Mode::look : Database::Mode::write);
-  const bool whole = access == SweepAccess::replace ? has_tables(database) : is_made_as_here(database);
-  if (!whole) refuse("`" + path + "` is no database of `hwsim sweep`");
-  if (looks) return database;
+  require_own_schema(database, path);  // again: another program may have been here meanwhile
+  return database;
+}
+
+void begin_writing(Database& database, SweepAccess access) {
   log_writes(database);
   database.execute("PRAGMA synchronous=NORMAL; PRAGMA foreign_keys=ON");
   if (access == SweepAccess::replace) empty(database);
-  return database;
 }
 
 }  // namespace hwsim::lab

@@ -15,8 +15,12 @@ enum class SweepAccess {
   replace  ///< as go_on, then emptied in one transaction
 };
 
-/// Throws InputError U013 when a file exists that must not, and U021 when it is no sweep of this version
-/// (`replace` takes every version) or cannot be opened. The file is then as it was before.
+/// Throws InputError U013 when a file exists that must not, and U021 when it cannot be opened or is no sweep
+/// of this version with nothing of anybody else's in it. No byte of a file that was there has changed by
+/// then.
 Database open_sweep(const std::string& path, SweepAccess access);
+
+/// Makes the database ready for several writers, and empties the one that is replaced.
+void begin_writing(Database& database, SweepAccess access);
 
 }  // namespace hwsim::lab

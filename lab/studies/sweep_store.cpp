@@ -48,7 +48,8 @@ SweepStore::SweepStore(const std::string& path, SweepAccess access)
       writes_(access != SweepAccess::look),
       database_(open_sweep(path, access)) {
   if (!writes_) return;
-  require_model(model_of(database_), model_version(), path_);
+  if (access != SweepAccess::replace) require_model(model_of(database_), model_version(), path_);
+  begin_writing(database_, access);
   remember("model_version", std::string(model_version()));
 }
 

@@ -145,19 +145,60 @@ TEST_F(SweepStoreTest, MergedPartsOfASweepEqualTheWhole) {
   EXPECT_EQ(to_csv(collected(merged.points())), to_csv(collected(whole.points())));
 }
 
-TEST_F(SweepStoreTest, DatabaseWithMoreThanASweepsTablesIsRefused) {
+// Whatever somebody else put into a sweep's database is theirs: nothing replaces it, and nothing is written
+// beside it.
+TEST_F(SweepStoreTest, DatabaseWithMoreThanASweepsTablesStaysByteForByteAsItWas) {
   for (const char* sql :
        {"CREATE TRIGGER t AFTER UPDATE ON point BEGIN SELECT 1; END", "CREATE VIEW v AS SELECT 1",
-        "ALTER TABLE point ADD COLUMN more TEXT AS (hex(zeroblob(300000000)))", "CREATE TABLE more (a)"}) {
+        "ALTER TABLE point ADD COLUMN more TEXT AS (hex(zeroblob(300000000)))", "CREATE TABLE more (a)",
+        "ALTER TABLE point ADD COLUMN mine TEXT", "CREATE INDEX i ON point (gpu)", "ANALYZE",
+        "DROP TABLE pass", "ALTER TABLE point RENAME COLUMN limiter TO limit_", "PRAGMA user_version=999",
+        "PRAGMA user_version=3", "PRAGMA application_id=1"}) {
+    make("a.db", {{"p1", 1e6}});
+    make("b.db", {{"p2", 1e6}});
+    Database(path("a.db"), Database::Mode::write).execute(sql);
+    const auto before = files();
+    for (const SweepAccess access : {SweepAccess::look, SweepAccess::go_on, SweepAccess::replace})
+      EXPECT_EQ(code_of([&] { SweepStore(path("a.db"), access); }), "U021") << sql;
+    EXPECT_EQ(code_of([&] { Lab().sweep({}, {.database = path("b.db"), .merge = {path("a.db")}}); }), "U021")
+        << sql;
+    EXPECT_EQ(code_of([&] { Lab().sweep({}, {.database = path("a.db"), .merge = {path("b.db")}}); }), "U021")
+        << sql;
+    EXPECT_EQ(files(), before) << sql;
+    fs::remove(path("a.db"));
+    fs::remove(path("b.db"));
+  }
+}
+
+// What stands in the log beside a database is not in the file's first bytes.
+TEST_F(SweepStoreTest, PartsThatStandInALogAreSeen) {
+  for (const char* sql : {"CREATE TABLE more (a)", "PRAGMA user_version=999", "PRAGMA application_id=1"}) {
     make("a.db", {{"p1", 1e6}});
     {
-      Database database(path("a.db"), Database::Mode::write);
-      database.execute(sql);
+      Database other(path("a.db"), Database::Mode::write);
+      other.execute("PRAGMA journal_mode=WAL; PRAGMA wal_autocheckpoint=0");
+      other.execute(sql);
+      const std::string before = files().at("a.db");
+      for (const SweepAccess access : {SweepAccess::look, SweepAccess::go_on, SweepAccess::replace})
+        EXPECT_EQ(code_of([&] { SweepStore(path("a.db"), access); }), "U021") << sql;
+      EXPECT_EQ(files().at("a.db"), before) << sql;
     }
-    for (const SweepAccess access : {SweepAccess::look, SweepAccess::go_on})
-      EXPECT_EQ(code_of([&] { SweepStore(path("a.db"), access); }), "U021") << sql;
     fs::remove(path("a.db"));
   }
+}
+
+// The mode of the journal changes with a journal of its own; who is killed then leaves it.
+TEST_F(SweepStoreTest, JournalThatAKilledProcessLeftIsTakenBack) {
+  make("a.db", {{"p1", 1e6}});
+  const pid_t child = ::fork();
+  if (child == 0) {
+    Database database(path("a.db"), Database::Mode::write);
+    database.execute("PRAGMA cache_size=1; BEGIN; UPDATE sweep SET value = value || hex(zeroblob(100000))");
+    ::_exit(0);
+  }
+  ::waitpid(child, nullptr, 0);
+  ASSERT_TRUE(fs::exists(path("a.db-journal")));
+  EXPECT_EQ(SweepStore(path("a.db"), SweepAccess::go_on).states()["done"], 1u);
 }
 
 TEST_F(SweepStoreTest, RowsThatNoSweepWritesAreRefused) {
@@ -289,11 +330,8 @@ TEST_F(SweepStoreTest, LookAtWhatIsNotThereLeavesNoFile) {
   EXPECT_TRUE(files().empty());
 }
 
-TEST_F(SweepStoreTest, ReplacedSweepOfAnyVersionIsEmptyAndOfThisVersion) {
+TEST_F(SweepStoreTest, ReplacedSweepIsEmpty) {
   make("a.db", {{"p1", 1e6}});
-  Database(path("a.db"), Database::Mode::write).execute("PRAGMA user_version=99");
-  EXPECT_EQ(code_of([&] { SweepStore(path("a.db"), SweepAccess::look); }), "U021");
-  EXPECT_EQ(code_of([&] { SweepStore(path("a.db"), SweepAccess::go_on); }), "U021");
   EXPECT_EQ(SweepStore(path("a.db"), SweepAccess::replace).states()["done"], 0u);
   EXPECT_TRUE(collected(sweep_rows(path("a.db"))).rows.empty());
 }
@@ -354,7 +392,9 @@ TEST_F(SweepStoreTest, PointsOfAnotherBuildAreReadAndNotMixed) {
   Database(path("a.db"), Database::Mode::write)
       .execute("UPDATE sweep SET value = '0123' WHERE key = 'model_version'");
   EXPECT_EQ(collected(sweep_rows(path("a.db"))).rows.size(), 1u);
+  const std::string before = files().at("a.db");
   EXPECT_EQ(code_of([&] { SweepStore(path("a.db"), SweepAccess::go_on); }), "U021");
+  EXPECT_EQ(files().at("a.db"), before) << "not even the mode of its journal";
   EXPECT_EQ(code_of([&] { SweepStore(path("b.db"), SweepAccess::go_on).merge(path("a.db")); }), "U021");
   EXPECT_EQ(SweepStore(path("a.db"), SweepAccess::replace).states()["done"], 0u);
   EXPECT_EQ(SweepStore(path("b.db"), SweepAccess::go_on).merge(path("a.db")), 0u)
