@@ -84,6 +84,8 @@ constexpr CounterLaw kUnitLaws[] = {
                       c.shader.alu_issued_lane_ops_w8),
     HWSIM_LAW_AT_MOST("shader.alu_issued_lane_ops_w8 <= shader.alu_issued_lane_ops_w64",
                       c.shader.alu_issued_lane_ops_w8, c.shader.alu_issued_lane_ops_w64),
+    HWSIM_LAW_AT_MOST("shader.narrow_store_lane_ops <= shader.store_lane_ops", c.shader.narrow_store_lane_ops,
+                      c.shader.store_lane_ops),
     HWSIM_LAW_AT_MOST("shader.same_address_atomic_lane_ops <= shader.atomic_lane_ops",
                       c.shader.same_address_atomic_lane_ops, c.shader.atomic_lane_ops),
     HWSIM_LAW_AT_MOST("tex.gathers + tex.comparisons <= tex.requests", c.tex.gathers + c.tex.comparisons,

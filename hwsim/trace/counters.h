@@ -105,7 +105,8 @@ inline constexpr std::array<int, 4> kSubgroupWidths = {8, 16, 32, 64};
   X(memory_chain_lane_ops, "memory requests of the longest chain, summed over lanes")                   \
   X(register_lanes, "32-bit registers of an invocation, summed over invocations")                       \
   X(load_lane_ops, "32-bit loads from buffers")                                                         \
-  X(store_lane_ops, "32-bit stores to buffers")                                                         \
+  X(store_lane_ops, "stores to buffers and images, a word each")                                        \
+  X(narrow_store_lane_ops, "of these, texels of fewer than 32 bits")                                    \
   X(atomic_lane_ops, "atomic operations")                                                               \
   X(same_address_atomic_lane_ops, "of these, on the pass's most frequent address")                      \
   X(group_memory_lane_ops, "32-bit accesses to group memory")

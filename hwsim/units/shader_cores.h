@@ -110,7 +110,8 @@ ShaderPipes<T> shader_pipes(const PassCounters& c, const R& r) {
       r.memory_word_ns;
   const T group = static_cast<double>(c.shader.group_memory_lane_ops) * r.group_memory_word_ns;
   const T atomics =
-      larger(T(static_cast<double>(c.shader.atomic_lane_ops) * r.atomic_ns),
+      larger(T(static_cast<double>(c.shader.atomic_lane_ops) * r.atomic_ns +
+               static_cast<double>(c.shader.narrow_store_lane_ops) * r.narrow_store_ns),
              T(static_cast<double>(c.shader.same_address_atomic_lane_ops) * r.same_address_atomic_ns));
   return {alu, sfu, words, group, atomics};
 }
@@ -124,7 +125,7 @@ struct ShaderCores {
   static constexpr UnitInfo kInfo = {
       "shader", UnitPlace::cores, set_of(),
       "max over the pipes of the cores: arithmetic, special functions, loads and stores, group memory, "
-      "atomics; at least the latency bound, see below"};
+      "atomics with narrow stores; at least the latency bound, see below"};
 
   template <class T>
   struct Values {
@@ -148,6 +149,7 @@ struct ShaderCores {
     int core_lines_max = 256;
     T atomic_lane_ops_per_clk{64.0};
     T atomic_same_address_ops_per_clk{1.0};
+    T narrow_stores_per_clk{kRateHigh};
   };
 
   template <class V, class T>
@@ -202,13 +204,16 @@ struct ShaderCores {
           c.atomic_lane_ops_per_clk);
     v.key({"atomic_same_address_ops_per_clk", kRateLow, kRateHigh, kFit | kFaster, "atomics on one address"},
           c.atomic_same_address_ops_per_clk);
+    v.key({"narrow_stores_per_clk", kRateLow, kRateHigh, kFaster,
+           "texels of fewer than 32 bits that the chip's shaders store; they take the path of atomics"},
+          c.narrow_stores_per_clk);
   }
 
   template <class T>
   struct Rates {
     T shader_cores, subgroups_max, registers, group_memory_bytes, alu_latency_ns;
     T alu_lane_op_ns, sfu_lane_op_ns, interp_scalar_ns, memory_word_ns, group_memory_word_ns;
-    T atomic_ns, same_address_atomic_ns;
+    T atomic_ns, same_address_atomic_ns, narrow_store_ns;
     T vliw_word_ns;  ///< zero where words have neither five slots nor four: then the average fill alone says
                      ///< it
     T vliw_sfu_slots, registers_lane_max;
@@ -242,6 +247,7 @@ struct ShaderCores {
     r.group_memory_word_ns = clk_ns / (c.shader_cores * c.group_memory_words_per_core_clk);
     r.atomic_ns = clk_ns / c.atomic_lane_ops_per_clk;
     r.same_address_atomic_ns = clk_ns / c.atomic_same_address_ops_per_clk;
+    r.narrow_store_ns = clk_ns / c.narrow_stores_per_clk;
     r.subgroup_size = c.subgroup_size;
   }
 

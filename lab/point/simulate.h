@@ -4,23 +4,16 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
 #include "cost_models/intervals.h"
+#include "lab/base/internal_error.h"
 #include "lab/point/image_errors.h"
 #include "lab/store/reference_image.h"
 #include "lab/store/trace_store.h"
 #include "pipeline/image/metrics.h"
 
 namespace hwsim::lab {
-
-/// A law that hwsim itself broke. Not the user's mistake: exit status 1, and the manifest is printed to
-/// attach.
-class InternalError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 struct PointResult {
   const algos::TechniqueChoice* technique = nullptr;
@@ -61,9 +54,7 @@ class Simulator {
 /// Throws InternalError when an invariant is violated. In any thread.
 void time_point(PointResult& point, const RunPlan& plan);
 
-/// The invariants of every run, once for each trace and for each timing; throw InternalError with all that
-/// are violated.
-void check_counts(const WorkTrace& trace);
+/// The invariants of every timing; throws InternalError with all that are violated.
 void check_times(const WorkTrace& trace, const FrameTiming& timing, const GpuConfig& gpu);
 
 }  // namespace hwsim::lab

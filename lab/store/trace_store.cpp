@@ -8,9 +8,11 @@
 #include <cstring>
 #include <map>
 
+#include "algos/rooms.h"
 #include "algos/source_digest.h"
 #include "hwsim/base/byte_codec.h"
 #include "hwsim/trace/trace_file.h"
+#include "lab/base/internal_error.h"
 #include "lab/request/request.h"
 #include "pipeline/base/sealed_file.h"
 #include "pipeline/graph/validate.h"
@@ -78,6 +80,17 @@ pipeline::FrameGraph graph_of(SceneView& scene, const algos::TechniqueChoice& te
 pipeline::SealKind frame_kind() { return {"frame", algos::source_digest()}; }
 pipeline::SealKind image_kind() { return {"image", algos::source_digest()}; }
 
+/// The laws that counters keep. Throws InternalError with all that are broken: such work is neither timed nor
+/// kept.
+void check_counts(const WorkTrace& trace) {
+  std::string violations;
+  for (const PassWork& pass : trace.passes)
+    for (const CounterViolation& v : algos::broken_laws(total(pass)))
+      violations += fmt::format("\n  pass {}: {} ({} against {})", pass.name, v.law, v.left, v.right);
+  if (!violations.empty())
+    throw InternalError(fmt::format("technique {} violates invariants:{}", trace.technique, violations));
+}
+
 }  // namespace
 
 std::optional<std::string> frame_title(const std::string& path, const Cache& cache) try {
@@ -110,12 +123,13 @@ EmulatedFrame TraceStore::frame(SceneView& scene, const algos::TechniqueChoice& 
                                 const GpuConfig& gpu, const FrameNeeds& needs,
                                 const ProgressFunction& progress) {
   std::string key = trace_key(work_text(scene, technique, gpu, needs));
-  EmulatedFrame result{in_memory(key, needs.image), true, true};
+  EmulatedFrame result{in_memory(key, needs.image), true};
   if (result.emulation) return result;
-  result.in_memory = false;
   if (options_.disk) result.emulation = on_disk(key, scene, needs.image);
+  if (result.emulation) check_counts(result.emulation->trace);
   if (!result.emulation) {
-    result = {emulate(scene, technique, gpu, needs, progress), false, false};
+    result = {emulate(scene, technique, gpu, needs, progress), false};
+    check_counts(result.emulation->trace);
     key =
         trace_key(work_text(scene, technique, gpu, needs));  // the file may have changed before it was loaded
     if (options_.disk)

@@ -23,7 +23,6 @@ struct FrameNeeds {
 struct EmulatedFrame {
   std::shared_ptr<const pipeline::Emulation> emulation;  ///< wall_s: what getting it took this time
   bool from_cache = false;  ///< whether it was kept by this process or on the disk
-  bool in_memory = false;   ///< this process has had it before
 };
 
 /// What a trace in the cache is of: "msaa4x of sponza_hall, 320x180"; none where this version cannot read it.
@@ -40,7 +39,8 @@ class TraceStore {
   TraceStore(const Options& options, const Cache& cache, Observer& observer)
       : options_(options), cache_(cache), observer_(observer), memo_(options.shared_passes_bytes) {}
 
-  /// Only features and limits of `gpu` matter. Throws InputError where the technique cannot run on it.
+  /// Only features and limits of `gpu` matter. Throws InputError where the technique cannot run on it,
+  /// InternalError where counters of the work break a law.
   EmulatedFrame frame(SceneView& scene, const algos::TechniqueChoice& technique, const GpuConfig& gpu,
                       const FrameNeeds& needs, const ProgressFunction& progress);
 

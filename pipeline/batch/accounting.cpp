@@ -120,6 +120,7 @@ void account_shading(const FragmentBatch& batch, const FragmentProgram& program,
   c.mem.texture_read_bytes += batch.image_read_bytes;
   c.mem.storage_read_bytes += batch.storage_read_bytes;
   c.mem.storage_write_bytes += batch.storage_write_bytes;
+  c.shader.narrow_store_lane_ops += batch.narrow_stores;
 }
 
 }  // namespace hwsim::pipeline

@@ -122,7 +122,8 @@ struct FragmentBatch {
   std::uint64_t image_probes = 0;         ///< filtered requests to the pass's images
   TexelCounts image_texels;               ///< unfiltered texels loaded from the pass's images
   std::uint64_t image_read_bytes = 0;     ///< read by probes and texels
-  std::uint64_t storage_read_bytes = 0, storage_write_bytes = 0;  ///< the pass's buffers
+  std::uint64_t storage_read_bytes = 0, storage_write_bytes = 0;  ///< the pass's buffers and stored texels
+  std::uint64_t narrow_stores = 0;                                ///< stored texels of fewer than 32 bits
 };
 
 /// Up to 64 vertices in a vertex shader.

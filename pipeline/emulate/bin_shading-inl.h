@@ -302,7 +302,7 @@ class BinShading : protected BinColor {
     batch.image_probes = 0;
     batch.image_texels = {};
     batch.image_read_bytes = 0;
-    batch.storage_read_bytes = batch.storage_write_bytes = 0;
+    batch.storage_read_bytes = batch.storage_write_bytes = batch.narrow_stores = 0;
     batch.counters = &w_.counters();
     w_.program->run(batch, w_.uniforms);
     w_.tracker.end_batch();

@@ -111,9 +111,11 @@ class BufferAccess {
   int slot_, first_lane_;
 };
 
+inline constexpr std::uint64_t kWordBytes = 4;
+
 /// Bytes of one word for each lane of a mask.
 HWY_INLINE std::uint64_t word_bytes(LaneM mask) {
-  return 4 * static_cast<std::uint64_t>(__builtin_popcount(mask_bits(mask)));
+  return kWordBytes * static_cast<std::uint64_t>(__builtin_popcount(mask_bits(mask)));
 }
 
 }  // namespace hwsim::pipeline::HWY_NAMESPACE

@@ -190,8 +190,10 @@ class ComputeLanes : public LaneFlow {
             static_cast<std::uint32_t>(words[w][lane]);
       note_store(*group_.resources, target, first_ + lane, {px[lane], py[lane], ps[lane]});
     }
-    group_.counters->mem.storage_write_bytes +=
-        static_cast<std::uint64_t>(__builtin_popcount(bits)) * info(image.format).bytes;
+    const auto texels = static_cast<std::uint64_t>(__builtin_popcount(bits));
+    const auto bytes = static_cast<std::uint64_t>(info(image.format).bytes);
+    group_.counters->mem.storage_write_bytes += texels * bytes;
+    if (bytes < kWordBytes) group_.counters->shader.narrow_store_lane_ops += texels;
   }
 
  private:

@@ -168,8 +168,10 @@ class FragmentLanes : public LaneFlow {
                                 static_cast<std::uint32_t>(image.word_index(px[lane], py[lane], ps[lane], 0)),
                                 static_cast<std::uint32_t>(word[lane])});
     }
-    batch_.storage_write_bytes += static_cast<std::uint64_t>(__builtin_popcount(bits)) *
-                                  static_cast<std::uint64_t>(info(image.format).bytes);
+    const auto texels = static_cast<std::uint64_t>(__builtin_popcount(bits));
+    const auto bytes = static_cast<std::uint64_t>(info(image.format).bytes);
+    batch_.storage_write_bytes += texels * bytes;
+    if (bytes < kWordBytes) batch_.narrow_stores += texels;
   }
   void output_depth(F depth) { store(depth, batch_.depth + first_); }
 

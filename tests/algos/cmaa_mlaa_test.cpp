@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "algos/picture.h"
+#include "support/frames.h"
 
 namespace hwsim::test {
 namespace {
@@ -122,6 +123,15 @@ TEST(Cmaa, LaterPassesRunOnlyWhereEdgesAreButForCombining) {
   // What passes are marked quads that lose their mark.
   EXPECT_EQ(combine.zrop.late_z_tested_samples - combine.zrop.late_z_killed_samples,
             invocations("cmaa_prune") - invocations("cmaa_blend"));
+}
+
+/// Edges have a byte a pixel and are stored everywhere; the colors that blending stores have four.
+TEST(Cmaa, StoresABytePerPixelWhereItCombines) {
+  const Filtered f = filter(step(128), "cmaa");
+  const auto shader = [&](const std::string& name) { return total(pass_named(f.trace, name)).shader; };
+  EXPECT_EQ(shader("cmaa_combine").narrow_store_lane_ops, 128u * 32u);
+  EXPECT_EQ(shader("cmaa_blend").narrow_store_lane_ops, 0u);
+  EXPECT_GT(shader("cmaa_blend").store_lane_ops, 0u);
 }
 
 }  // namespace

@@ -347,6 +347,7 @@ TEST(SbaaAnalysis, CostsWhatItCostsWhereverNothingIs) {
 TEST(SbaaAnalysis, WritesTwoBytesASurfaceAndNoRecord) {
   const auto e = small_triangle("sbaa_top:n=2");
   EXPECT_EQ(counters_of(e, "analysis").mem.storage_write_bytes, 64u * 64u * 2u * 2u);
+  EXPECT_EQ(counters_of(e, "analysis").shader.narrow_store_lane_ops, 64u * 64u * 2u);
 }
 
 // Without its G-buffer pass every chosen slot stays empty: skipped, and the pixel shows the background.

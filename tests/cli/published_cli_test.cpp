@@ -113,10 +113,12 @@ TEST(Published, AStatementThatNoLongerHoldsEndsInStatusFour) {
   EXPECT_NE(broken.err.find("accuracy: mape_pct of in_sample"), std::string::npos) << broken.err;
 }
 
-// A new key of GPU files changes their hashes: the calibrated files are to be written anew then.
+// A new key of GPU files changes their hashes: the calibrated files are to be written anew then. The clocks
+// of the HD 7650M and the Tegra K1 end at a bound, which is not credible: these are no better than
+// interpolated.
 TEST(Published, ShippedCalibrationIsThatOfTheShippedGpus) {
   const Workplace place;
-  for (const char* point : {"axaa:discard=on -g hd4600", "axaa:discard=on -g hd7650m", "sbaa_top -g hd5870",
+  for (const char* point : {"axaa:discard=on -g hd4600", "axaa:discard=on -g gf840m", "sbaa_top -g hd5870",
                             "sss_gs -g gtx470", "agaa -g gtx980"}) {
     SCOPED_TRACE(point);
     const Outcome outcome = place.hwsim(

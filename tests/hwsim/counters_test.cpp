@@ -112,6 +112,7 @@ TEST(Conservation, LawfulCountersPassAndEachBrokenLawIsFoundAlone) {
       {"discarded", [](PassCounters& c) { c.ps.discarded_invocations = 41; }},
       {"shader.alu_lane_ops", [](PassCounters& c) { c.shader.alu_lane_ops = 111; }},
       {"alu_issued_lane_ops_w64", [](PassCounters& c) { c.shader.alu_issued_lane_ops_w64 = 109; }},
+      {"narrow_store", [](PassCounters& c) { c.shader.narrow_store_lane_ops = 1; }},
       {"same_address", [](PassCounters& c) { c.shader.same_address_atomic_lane_ops = 1; }},
       {"blended", [](PassCounters& c) { c.crop.blended_samples = 31; }},
       {"zrop.first_touched", [](PassCounters& c) { c.zrop.first_touched_tiles = 9; }},

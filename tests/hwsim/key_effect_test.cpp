@@ -87,6 +87,7 @@ std::vector<PassWork> single_path_passes() {
       pass_of([](PassCounters& c) { c.shader.load_lane_ops = 999; }),
       pass_of([](PassCounters& c) { c.shader.group_memory_lane_ops = 999; }),
       pass_of([](PassCounters& c) { c.shader.atomic_lane_ops = 999; }),
+      pass_of([](PassCounters& c) { c.shader.narrow_store_lane_ops = 999; }),
       pass_of([](PassCounters& c) { c.gs.output_bytes = 9999; }),
       pass_of([](PassCounters& c) { c.tex.bilinear_probes = 999; }),
       pass_of([](PassCounters& c) { c.tex.gathers = 999; }),

@@ -154,6 +154,18 @@ TEST(Atomics, OfOneAddressTakeTurns) {
   EXPECT_NEAR(shader_ns(repeated(PassKind::compute, c, 1), gpu), 21'600.0, 1e-6);
 }
 
+// AMD's guide to OpenCL: what is narrower than 32 bits and atomics are stored by one path.
+TEST(NarrowStores, ShareThePathOfAtomics) {
+  GpuConfig gpu = sample_gpu();
+  gpu.atomic_lane_ops_per_clk = 24;
+  gpu.narrow_stores_per_clk = 2;
+  PassCounters c;
+  c.shader.store_lane_ops = c.shader.narrow_store_lane_ops = 200;
+  EXPECT_DOUBLE_EQ(shader_ns(repeated(PassKind::compute, c, 1), gpu), 100.0);
+  c.shader.atomic_lane_ops = 2400;
+  EXPECT_DOUBLE_EQ(shader_ns(repeated(PassKind::compute, c, 1), gpu), 200.0);
+}
+
 TEST(Texture, UnfilteredTexelsCostTheRatioOfTheirSize) {
   GpuConfig gpu = sample_gpu();
   PassCounters c;

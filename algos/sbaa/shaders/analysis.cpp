@@ -25,6 +25,7 @@ enum AnalysisBlock : int {
   kUncountBlock = 7,  // MERGE: its counter
   kLinearDepthBlock = 8,
   kClearBlock = 9,  // the counters of a pixel's samples
+  kEmitBlock = 10,  // a slot is stored, empty or not
 };
 
 /// One pixel's samples in registers.
@@ -192,7 +193,7 @@ void analyze(S& s, const SbaaAnalysisUniforms& u) {
       else
         remove_primitive(s, u, best, running, p);
     });
-    emit_surface(s, u, slot, best, background);
+    s.branch(kEmitBlock, s.valid(), [&]() HWY_ATTR { emit_surface(s, u, slot, best, background); });
   }
   s.loop(kClearBlock, u.samples, s.valid(),
          [&](int i) HWY_ATTR { s.store_group_byte(counter_address(s, u, p.id[i]), I(0), s.valid()); });
