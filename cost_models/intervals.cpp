@@ -40,13 +40,6 @@ bool of_interval(const Calibration& calibration, const CalibratedParameter& p, c
   return p.name != kPresent && concerns(calibration, p, gpu);
 }
 
-/// Whether no fitted number that a frame depends on has paid for what the model or a scene lacks.
-bool credible(const Calibration& calibration, const std::string& gpu) {
-  return std::ranges::all_of(calibration.parameters, [&](const CalibratedParameter& p) {
-    return p.credible || !p.used || !of_interval(calibration, p, gpu);
-  });
-}
-
 Support support_of(const Calibration& calibration, const GpuConfig& gpu, const std::string& fitted_id,
                    const std::string& technique) {
   const std::string& hash = calibration.gpu_hashes.at(fitted_id);
@@ -102,6 +95,12 @@ std::string calibrated_id(const Calibration& calibration, const GpuConfig& gpu) 
   const auto parent = std::ranges::find_if(
       gpu.parents, [&](const std::string& id) { return calibration.gpu_hashes.contains(id); });
   return parent == gpu.parents.end() ? std::string() : *parent;
+}
+
+bool credible(const Calibration& calibration, const std::string& gpu) {
+  return std::ranges::all_of(calibration.parameters, [&](const CalibratedParameter& p) {
+    return p.credible || !p.used || !of_interval(calibration, p, gpu);
+  });
 }
 
 std::vector<std::string> interval_keys(const Calibration& calibration, const std::string& gpu) {

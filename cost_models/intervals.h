@@ -35,6 +35,10 @@ struct TimedFrame {
 /// changed ones of that. Empty: none.
 std::string calibrated_id(const Calibration& calibration, const GpuConfig& gpu);
 
+/// Whether no fitted number that frames on a fitted GPU depend on has paid for what the model or a scene
+/// lacks.
+bool credible(const Calibration& calibration, const std::string& gpu);
+
 /// The fitted keys of a GPU, which its intervals come from.
 std::vector<std::string> interval_keys(const Calibration& calibration, const std::string& gpu);
 

@@ -7,9 +7,11 @@
 #include <map>
 
 #include "algos/techniques.h"
+#include "cost_models/intervals.h"
 #include "hwsim/base/csv.h"
 #include "hwsim/config/toml_file.h"
 #include "hwsim/gpu/gpu_config.h"
+#include "lab/catalog/config_files.h"
 #include "pipeline/open/scene_source.h"
 
 namespace hwsim::lab {
@@ -18,6 +20,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kTextColumns = 72;
+
+/// What the best interval of a GPU's frames rests on.
+std::string calibrated_text(const cost_models::Calibration* calibration, const GpuConfig& gpu) {
+  const std::string fitted = calibration ? cost_models::calibrated_id(*calibration, gpu) : std::string();
+  if (fitted.empty()) return "no";
+  if (fitted != gpu.id) return "by " + fitted;
+  return cost_models::credible(*calibration, fitted) ? "yes" : "in part";
+}
 
 }  // namespace
 
@@ -29,13 +39,12 @@ Table Catalog::gpus() const {
                {"dram_bandwidth_gb_s", "DRAM GB/s", true},
                {"calibrated", "calibrated"}},
               {}};
-  const std::string directory = folder_.gpus(), calibrated = folder_.calibrated();
+  const std::string directory = folder_.gpus();
+  const auto calibration = ConfigFiles(folder_).calibration();
   for (const std::string& id : list_gpus(directory)) {
     const GpuConfig gpu = load_gpu(id, {}, {}, directory);
-    std::error_code error;
-    const bool fitted = std::filesystem::exists(calibrated + "/" + gpu.id + ".toml", error);
     table.rows.push_back({gpu.id, gpu.title, gpu.architecture, Real{gpu.core_clock_mhz, 0},
-                          Real{gpu.dram_bandwidth_gb_s, 1}, fitted ? "yes" : "no"});
+                          Real{gpu.dram_bandwidth_gb_s, 1}, calibrated_text(calibration.get(), gpu)});
   }
   return table;
 }

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "cli/program.h"
 
@@ -19,6 +22,23 @@ TEST(List, EveryCatalogIsListedInEveryFormat) {
     EXPECT_EQ(csv.find("n/a"), std::string::npos) << what;
     EXPECT_EQ(place.hwsim("list " + what + " --format md").out.rfind("| ", 0), 0u) << what;
   }
+}
+
+// The Tegra K1's clock ends at a bound of its range; the GTX 570 extends the GTX 470, which was fitted.
+TEST(List, GpusSayWhatTheirCalibrationIs) {
+  const Workplace place;
+  std::map<std::string, std::string> calibrated;
+  for (const json& row : json::parse(place.hwsim("list gpus --json").out))
+    calibrated[row["id"].get<std::string>()] = row["calibrated"].get<std::string>();
+  EXPECT_EQ(calibrated["gtx980"], "yes");
+  EXPECT_EQ(calibrated["tegrak1"], "in part");
+  EXPECT_EQ(calibrated["gtx570"], "by gtx470");
+  EXPECT_EQ(calibrated["rtx4090"], "no");
+  std::filesystem::create_directories(place / "bare");
+  std::filesystem::copy(hwsim::test::source_dir() + "/configs/gpus", place / "bare/gpus",
+                        std::filesystem::copy_options::recursive);
+  for (const json& row : json::parse(place.hwsim("list gpus --json", "HWSIM_CONFIG_DIR=bare").out))
+    EXPECT_EQ(row["calibrated"], "no") << row["id"];
 }
 
 TEST(List, FormatWritesToAFile) {
