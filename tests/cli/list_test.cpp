@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli/program.h"
+#include "support/places.h"
 
 namespace hwsim::cli::test {
 namespace {
